@@ -1,0 +1,22 @@
+//! fixpair: Fixed, Paired and Matched initial conditions with primordial non-Gaussianity.
+//!
+//! Numerical kernels over memory that the caller owns, after Avila & Adame 2022 (arXiv:2204.11103). The
+//! data walks one way through the rooms below; each imports only rooms above it.
+#![no_std]
+
+#[cfg(any(feature = "std", test))]
+extern crate std;
+
+pub mod status;
+
+pub mod real;
+
+pub mod simd;
+
+pub mod mesh;
+
+pub mod exec;
+
+pub mod walk;
+
+pub mod fft;

@@ -1,0 +1,293 @@
+//! Bricks: which part of an n x n x n mesh an array holds, and where each element lies.
+//!
+//! A mesh covers a periodic cube. In configuration space its elements are reals at (x, y, z), each index in
+//! `0..n`. In Fourier space they are complex numbers, stored as (re, im) pairs of reals, at the mode
+//! k = (2 pi/L) (i, j, l): axis 0 and 1 hold i and j in the order 0, 1, ..., n/2, -(n/2-1), ..., -1, axis 2 holds the
+//! half l = 0..=n/2. Strides count elements: reals in configuration space, complex numbers in Fourier space.
+//!
+//! Invariants of a [`Brick`], checked when it is made: n is even and positive; it is inside its mesh; no two of its
+//! elements share an address, because the axes nest (sorted by stride, each stride spans the axes before it).
+
+use crate::status::{Error, Result};
+
+/// Whether a brick holds real cells or complex modes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Space {
+    /// Real numbers on cells.
+    Configuration = 0,
+    /// Complex modes of the half space l >= 0.
+    Fourier = 1,
+}
+
+impl Space {
+    /// Reals in one element: 1 or 2.
+    #[must_use]
+    #[inline]
+    pub const fn width(self) -> usize {
+        match self {
+            Self::Configuration => 1,
+            Self::Fourier => 2,
+        }
+    }
+}
+
+/// A rectangular part of a mesh in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Brick {
+    n: usize,
+    space: Space,
+    start: [usize; 3],
+    count: [usize; 3],
+    stride: [usize; 3],
+}
+
+impl Brick {
+    /// Any layout, such as a pencil or a transposed slab.
+    ///
+    /// # Errors
+    /// `MeshSize` if n is zero or odd, `Brick` if the invariants of this module fail, `Overflow` if
+    /// n^3 elements of 16 bytes do not fit the address space.
+    pub fn general(
+        n: usize,
+        space: Space,
+        start: [usize; 3],
+        count: [usize; 3],
+        stride: [usize; 3],
+    ) -> Result<Self> {
+        if n == 0 || !n.is_multiple_of(2) {
+            return Err(Error::MeshSize);
+        }
+        let reals = n.checked_add(2).and_then(|m| m.checked_mul(n)?.checked_mul(n)?.checked_mul(8));
+        if reals.is_none_or(|bytes| isize::try_from(bytes).is_err()) {
+            return Err(Error::Overflow);
+        }
+        let brick = Self { n, space, start, count, stride };
+        let extent = brick.extent();
+        for axis in 0..3 {
+            if start[axis] > extent[axis] || count[axis] > extent[axis] - start[axis] {
+                return Err(Error::Brick);
+            }
+        }
+        let mut last = 0_usize; // offset of the last element of the axes seen so far
+        for axis in brick.axes_by_stride() {
+            if count[axis] > 1 && !brick.is_empty() {
+                if stride[axis] <= last {
+                    return Err(Error::Brick);
+                }
+                let span = stride[axis].checked_mul(count[axis] - 1).ok_or(Error::Overflow)?;
+                last = last.checked_add(span).ok_or(Error::Overflow)?;
+            }
+        }
+        let bytes = last.checked_add(1).and_then(|elements| elements.checked_mul(16));
+        if bytes.is_none_or(|bytes| isize::try_from(bytes).is_err()) {
+            return Err(Error::Overflow);
+        }
+        Ok(brick)
+    }
+
+    /// The whole mesh as an in-place real transform wants it: rows of n + 2 reals or n/2 + 1 modes.
+    ///
+    /// # Errors
+    /// As [`Brick::general`].
+    pub fn whole(n: usize, space: Space) -> Result<Self> {
+        Self::slab(n, space, 0, n)
+    }
+
+    /// The whole mesh with `padding` unused modes (twice as many reals) after each x plane. Where n is a power of
+    /// two, planes that are not a multiple of 4 KiB apart spare the transform cache conflicts.
+    ///
+    /// # Errors
+    /// As [`Brick::general`].
+    pub fn whole_padded(n: usize, space: Space, padding: usize) -> Result<Self> {
+        let mut brick = Self::whole(n, space)?;
+        brick.stride[0] = padding
+            .checked_mul(2 / space.width())
+            .and_then(|p| p.checked_add(brick.stride[0]))
+            .ok_or(Error::Overflow)?;
+        Self::general(n, space, brick.start, brick.count, brick.stride)
+    }
+
+    /// The x planes `first .. first + planes`, as FFTW-MPI deals them out.
+    ///
+    /// # Errors
+    /// As [`Brick::general`].
+    pub fn slab(n: usize, space: Space, first: usize, planes: usize) -> Result<Self> {
+        let row = Self::row(n, space)?;
+        let last = if space == Space::Configuration { n } else { n / 2 + 1 };
+        Self::general(n, space, [first, 0, 0], [planes, n, last], [row * n, row, 1])
+    }
+
+    /// The modes with y index `first .. first + rows`, y outermost: FFTW-MPI's transposed output.
+    ///
+    /// # Errors
+    /// As [`Brick::general`].
+    pub fn transposed_slab(n: usize, first: usize, rows: usize) -> Result<Self> {
+        let row = Self::row(n, Space::Fourier)?;
+        Self::general(n, Space::Fourier, [0, first, 0], [n, rows, row], [row, row * n, 1])
+    }
+
+    fn row(n: usize, space: Space) -> Result<usize> {
+        let modes = n / 2 + 1;
+        let row = modes * (2 / space.width());
+        row.checked_mul(n).ok_or(Error::Overflow)?;
+        Ok(row)
+    }
+
+    /// Cells or modes on a side of the whole mesh.
+    #[must_use]
+    #[inline]
+    pub const fn n(&self) -> usize {
+        self.n
+    }
+
+    /// Cells or modes?
+    #[must_use]
+    #[inline]
+    pub const fn space(&self) -> Space {
+        self.space
+    }
+
+    /// First index on each axis.
+    #[must_use]
+    #[inline]
+    pub const fn start(&self) -> [usize; 3] {
+        self.start
+    }
+
+    /// Elements on each axis.
+    #[must_use]
+    #[inline]
+    pub const fn count(&self) -> [usize; 3] {
+        self.count
+    }
+
+    /// Elements from one index to the next on each axis.
+    #[must_use]
+    #[inline]
+    pub const fn stride(&self) -> [usize; 3] {
+        self.stride
+    }
+
+    /// Elements on each axis of the whole mesh: (n, n, n) or (n, n, n/2 + 1).
+    #[must_use]
+    #[inline]
+    pub const fn extent(&self) -> [usize; 3] {
+        match self.space {
+            Space::Configuration => [self.n, self.n, self.n],
+            Space::Fourier => [self.n, self.n, self.n / 2 + 1],
+        }
+    }
+
+    /// Does it hold every element of the mesh?
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        self.count == self.extent()
+    }
+
+    /// Does it hold nothing?
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.count.contains(&0)
+    }
+
+    /// Elements that it holds.
+    #[must_use]
+    pub fn elements(&self) -> usize {
+        self.count[0] * self.count[1] * self.count[2]
+    }
+
+    /// Reals from the first element to the end of the last: the least length of its array.
+    #[must_use]
+    pub fn reals(&self) -> usize {
+        if self.is_empty() {
+            return 0;
+        }
+        let last: usize = (0..3).map(|axis| (self.count[axis] - 1) * self.stride[axis]).sum();
+        (last + 1) * self.space.width()
+    }
+
+    /// The axes, innermost first. An axis of at most one element has no stride to speak of and comes first.
+    #[must_use]
+    pub fn axes_by_stride(&self) -> [usize; 3] {
+        let mut axes = [2, 1, 0];
+        axes.sort_unstable_by_key(|&axis| {
+            let stride = if self.count[axis] > 1 { self.stride[axis] } else { 0 };
+            (stride, 2 - axis)
+        });
+        axes
+    }
+
+    /// The signed mode number of a Fourier index on axis 0 or 1: 0, 1, ..., n/2, -(n/2-1), ..., -1. (On axis 2 the
+    /// index is the mode number.)
+    #[must_use]
+    #[inline]
+    pub const fn mode(n: usize, index: usize) -> i64 {
+        if index <= n / 2 { index as i64 } else { index as i64 - n as i64 }
+    }
+
+    /// `Length` if `data` cannot hold it.
+    ///
+    /// # Errors
+    /// See above.
+    pub fn check_length<T>(&self, data: &[T]) -> Result<()> {
+        if data.len() < self.reals() { Err(Error::Length) } else { Ok(()) }
+    }
+
+    /// `Brick` if it does not live in `space`.
+    ///
+    /// # Errors
+    /// See above.
+    pub fn check_space(&self, space: Space) -> Result<()> {
+        if self.space == space { Ok(()) } else { Err(Error::Brick) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_meshes_share_memory_between_the_two_spaces() {
+        let cells = Brick::whole(6, Space::Configuration).unwrap();
+        let modes = Brick::whole(6, Space::Fourier).unwrap();
+        assert_eq!(cells.stride(), [48, 8, 1]);
+        assert_eq!(modes.stride(), [24, 4, 1]);
+        assert_eq!(modes.reals(), 6 * 6 * 8);
+        assert!(cells.reals() <= modes.reals());
+        assert!(cells.is_whole() && modes.is_whole());
+        let padded = Brick::whole_padded(6, Space::Fourier, 4).unwrap();
+        assert_eq!(
+            padded.stride()[0] * 2,
+            Brick::whole_padded(6, Space::Configuration, 4).unwrap().stride()[0]
+        );
+    }
+
+    #[test]
+    fn mode_numbers_are_signed_and_nyquist_is_positive() {
+        let numbers: std::vec::Vec<i64> = (0..6).map(|i| Brick::mode(6, i)).collect();
+        assert_eq!(numbers, [0, 1, 2, 3, -2, -1]);
+    }
+
+    #[test]
+    fn bad_bricks_are_refused() {
+        let general = |n, start, count, stride| Brick::general(n, Space::Configuration, start, count, stride);
+        assert_eq!(general(0, [0; 3], [1; 3], [1; 3]), Err(Error::MeshSize));
+        assert_eq!(general(7, [0; 3], [1; 3], [1; 3]), Err(Error::MeshSize));
+        assert_eq!(general(4, [4, 0, 0], [1; 3], [1; 3]), Err(Error::Brick), "outside");
+        assert_eq!(general(4, [0; 3], [4; 3], [4, 4, 1]), Err(Error::Brick), "two axes on one address");
+        assert_eq!(general(4, [0; 3], [4; 3], [16, 3, 1]), Err(Error::Brick), "rows overlap");
+        assert_eq!(general(4, [0; 3], [4; 3], [usize::MAX / 2, 4, 1]), Err(Error::Overflow));
+        assert_eq!(general(1 << 21, [0; 3], [1; 3], [1; 3]), Err(Error::Overflow));
+        assert_eq!(general(usize::MAX - 1, [0; 3], [1; 3], [1; 3]), Err(Error::Overflow));
+        assert!(general(4, [4, 0, 0], [0, 4, 4], [0; 3]).is_ok_and(|brick| brick.is_empty()));
+        assert!(general(4, [0; 3], [4; 3], [1, 4, 16]).is_ok(), "x innermost");
+    }
+
+    #[test]
+    fn axes_come_innermost_first() {
+        let slab = Brick::transposed_slab(8, 2, 3).unwrap();
+        assert_eq!(slab.axes_by_stride(), [2, 0, 1]);
+        assert_eq!(Brick::whole(8, Space::Configuration).unwrap().axes_by_stride(), [2, 1, 0]);
+    }
+}
