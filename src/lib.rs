@@ -11,6 +11,8 @@ pub mod status;
 
 pub mod real;
 
+pub mod scratch;
+
 pub mod simd;
 
 pub mod mesh;

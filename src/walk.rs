@@ -118,6 +118,7 @@ pub fn walk_sum<T: Real, const W: usize, const R: usize, const S: usize>(
 #[cfg(test)]
 mod tests {
     use std::vec;
+    use std::vec::Vec;
 
     use super::*;
     use crate::exec::{Serial, Threads};
@@ -165,7 +166,7 @@ mod tests {
     #[test]
     fn sums_do_not_depend_on_threads() {
         let brick = Brick::whole(12, Space::Configuration).unwrap();
-        let data: std::vec::Vec<f32> = (0..brick.reals()).map(|i| (i as f32).sin()).collect();
+        let data: Vec<f32> = (0..brick.reals()).map(|i| (i as f32).sin()).collect();
         let sum = |exec: &dyn Exec| {
             let mut partial = [[0.0; 1]; 12];
             walk_sum::<f32, 0, 1, 1>(exec, &brick, [], [&data], &mut partial, &|_, [], [mesh], sum| {
