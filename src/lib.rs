@@ -22,3 +22,7 @@ pub mod exec;
 pub mod walk;
 
 pub mod fft;
+
+pub mod initial;
+
+pub mod estimate;

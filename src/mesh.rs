@@ -207,14 +207,11 @@ impl Brick {
         (last + 1) * self.space.width()
     }
 
-    /// The axes, innermost first. An axis of at most one element has no stride to speak of and comes first.
+    /// The axes, innermost first.
     #[must_use]
     pub fn axes_by_stride(&self) -> [usize; 3] {
         let mut axes = [2, 1, 0];
-        axes.sort_unstable_by_key(|&axis| {
-            let stride = if self.count[axis] > 1 { self.stride[axis] } else { 0 };
-            (stride, 2 - axis)
-        });
+        axes.sort_unstable_by_key(|&axis| (self.stride[axis], 2 - axis));
         axes
     }
 

@@ -28,16 +28,34 @@ impl Simd {
             if __cpuid(0).eax >= 7 {
                 let one = __cpuid(1).ecx;
                 let wanted = FMA | OSXSAVE | AVX;
-                // SAFETY: OSXSAVE says that the system lets programs execute xgetbv.
-                if one & wanted == wanted
-                    && unsafe { system_saves_ymm() }
-                    && __cpuid_count(7, 0).ebx & AVX2 != 0
-                {
-                    return Self::Avx2;
+                if one & wanted == wanted {
+                    // SAFETY: OSXSAVE says that the system lets programs execute xgetbv.
+                    let saved = unsafe { system_saves_ymm() };
+                    if saved && __cpuid_count(7, 0).ebx & AVX2 != 0 {
+                        return Self::Avx2;
+                    }
                 }
             }
         }
         Self::Portable
+    }
+
+    /// Runs a loop compiled for this path. Only the width of the instructions differs: the compiler never fuses or reorders
+    /// floating-point operations, so the results are the same bits. `body` has to be `#[inline(always)]` to gain.
+    #[inline(always)]
+    pub fn vectorise<R>(self, body: impl FnOnce() -> R) -> R {
+        #[cfg(target_arch = "x86_64")]
+        {
+            #[target_feature(enable = "avx2")]
+            fn wide<R>(body: impl FnOnce() -> R) -> R {
+                body()
+            }
+            if self == Self::Avx2 {
+                // SAFETY: `Avx2` is constructed only where the processor has it.
+                return unsafe { wide(body) };
+            }
+        }
+        body()
     }
 }
 

@@ -1,0 +1,3 @@
+//! Spectra of fields on meshes.
+
+pub mod power;
