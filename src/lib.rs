@@ -26,3 +26,6 @@ pub mod fft;
 pub mod initial;
 
 pub mod estimate;
+
+#[cfg(test)]
+mod reference;

@@ -50,7 +50,7 @@ impl Factor for Tidal {
 /// -(D2/D^2) L/(2 pi) and the source of [`second_order_source`] it is Psi2.
 ///
 /// `out`: `fft.length()` reals, on return one component on the cells of `fft`; `source`: modes of `brick`, whose side is that of
-/// `fft`.
+/// `fft` or more.
 ///
 /// # Errors
 /// `Range` for an axis above 2, `NotFinite` for the scale, `Brick` for bricks that do not match, `Length`, or what `fft` returns.
@@ -72,7 +72,7 @@ pub fn displacement<T: Real>(
         return Err(Error::NotFinite);
     }
     let modes = *fft.fourier();
-    if modes.n() != brick.n() {
+    if modes.n() > brick.n() {
         return Err(Error::Brick);
     }
     map_modes(out, &modes, source, brick, &InverseGradient { axis, scale }, exec)?;
@@ -121,7 +121,7 @@ pub(crate) fn second_order_products<T: Real>(
         return Err(Error::Brick);
     }
     let [sum, a, b] = meshes;
-    let mut tidal = |out: &mut [T], i: usize, j: usize, work: &mut dyn Fft3<T>| -> Result<()> {
+    let tidal = |out: &mut [T], i: usize, j: usize, work: &mut dyn Fft3<T>| -> Result<()> {
         map_modes(out, &modes, density, brick, &Tidal(i, j), exec)?;
         work.inverse(out)
     };
