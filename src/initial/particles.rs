@@ -4,41 +4,73 @@
 //! (z - z0) with the brick's counts c, whatever its strides, and its id ((x N) + y) N + z + `first_id`, the same in every
 //! decomposition. Positions are in [0, L), in the unit of L; velocities in the unit of their factor.
 
+use core::marker::PhantomData;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-use crate::exec::{Exec, Shared};
+use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::status::{Error, Result};
 use crate::walk::{Run, walk};
 
-/// Three components for each particle, as one array of triples or as three arrays.
-pub enum Components<'a, T> {
-    /// x0 y0 z0 x1 y1 z1 ...: 3 N reals.
-    Triples(&'a mut [T]),
-    /// x0 x1 ..., y0 y1 ..., z0 z1 ...: N reals each.
-    Separate([&'a mut [T]; 3]),
+/// Where three components of each particle lie: component a of particle i at `start[a] + i stride`. That covers triples, three
+/// separate arrays, and a member of the caller's own particle struct.
+pub struct Components<'a, T> {
+    start: [*mut T; 3],
+    stride: usize,
+    particles: usize,
+    life: PhantomData<&'a mut [T]>,
 }
 
-impl<T: Real> Components<'_, T> {
-    /// `Length` unless there is room for exactly `particles`.
+// SAFETY: it stands for exclusive borrows of reals; kernels write each element from one chunk only.
+unsafe impl<T: Real> Sync for Components<'_, T> {}
+
+impl<'a, T: Real> Components<'a, T> {
+    /// x0 y0 z0 x1 y1 z1 ...
     ///
     /// # Errors
-    /// See above.
-    pub fn check_length(&self, particles: usize) -> Result<()> {
-        let fits = match self {
-            Self::Triples(triples) => Some(triples.len()) == particles.checked_mul(3),
-            Self::Separate(arrays) => arrays.iter().all(|array| array.len() == particles),
-        };
-        if fits { Ok(()) } else { Err(Error::Length) }
+    /// `Length` if the array is not made of triples.
+    pub fn triples(array: &'a mut [T]) -> Result<Self> {
+        if !array.len().is_multiple_of(3) {
+            return Err(Error::Length);
+        }
+        let (particles, first) = (array.len() / 3, array.as_mut_ptr());
+        let start = [first, first.wrapping_add(1), first.wrapping_add(2)];
+        Ok(Self { start, stride: 3, particles, life: PhantomData })
     }
 
-    /// One component, to be written by many chunks: the array, the offset of its first value, and the step to the next.
-    fn component(&mut self, axis: usize) -> (Shared<'_, T>, usize, usize) {
-        match self {
-            Self::Triples(triples) => (Shared::new(triples), axis, 3),
-            Self::Separate(arrays) => (Shared::new(arrays[axis]), 0, 1),
+    /// x0 x1 ..., y0 y1 ..., z0 z1 ...
+    ///
+    /// # Errors
+    /// `Length` if the arrays differ in length.
+    pub fn separate(arrays: [&'a mut [T]; 3]) -> Result<Self> {
+        let particles = arrays[0].len();
+        if arrays.iter().any(|array| array.len() != particles) {
+            return Err(Error::Length);
         }
+        Ok(Self { start: arrays.map(<[T]>::as_mut_ptr), stride: 1, particles, life: PhantomData })
+    }
+
+    /// Any stride, in elements of `T`.
+    ///
+    /// # Safety
+    /// For the life of the value, each `start[a] + i stride` with i < `particles` is an aligned element that only this value touches, and no
+    /// two of them are the same.
+    #[must_use]
+    pub unsafe fn strided(start: [*mut T; 3], stride: usize, particles: usize) -> Self {
+        Self { start, stride, particles, life: PhantomData }
+    }
+
+    fn check_length(&self, particles: usize) -> Result<()> {
+        if self.particles == particles { Ok(()) } else { Err(Error::Length) }
+    }
+
+    /// # Safety
+    /// `particle` is below the number of particles and no other thread touches it now.
+    #[inline(always)]
+    unsafe fn write(&self, axis: usize, particle: usize, value: T) {
+        // SAFETY: the element belongs to this value (constructors), and to the calling thread alone (caller).
+        unsafe { self.start[axis].add(particle * self.stride).write(value) }
     }
 }
 
@@ -84,19 +116,17 @@ pub fn displace<T: Real>(
     position.check_length(particles)?;
     velocity.check_length(particles)?;
     let lost = AtomicBool::new(false);
-    let (x, x_first, x_step) = position.component(axis);
-    let (v, v_first, v_step) = velocity.component(axis);
+    let (position, velocity) = (&*position, &*velocity);
     let write = |run: Run, psi1: &[T], psi2: Option<&[T]>| {
         let first = number(brick, run.index);
-        // SAFETY: a run's particles are numbered consecutively, runs hold different particles, and `check_length` made room for
-        // all of them; the two arrays are separate exclusive borrows.
-        let (x, v) = unsafe {
-            (
-                x.part(x_first + first * x_step, (run.length - 1) * x_step + 1),
-                v.part(v_first + first * v_step, (run.length - 1) * v_step + 1),
-            )
-        };
-        let sound = move_run(run, brick.n(), axis, step, psi1, psi2, (x, x_step), (v, v_step));
+        let moved = Moved { run, n: brick.n(), axis, step, psi1, psi2 };
+        let sound = moved.each(|i, place, speed| {
+            // SAFETY: a run's particles are numbered consecutively and inside the checked length, and runs hold different particles.
+            unsafe {
+                position.write(axis, first + i, place);
+                velocity.write(axis, first + i, speed);
+            }
+        });
         if !sound {
             lost.store(true, Ordering::Relaxed);
         }
@@ -118,37 +148,38 @@ fn number(brick: &Brick, index: [usize; 3]) -> usize {
     ((index[0] - start[0]) * count[1] + index[1] - start[1]) * count[2] + index[2] - start[2]
 }
 
-/// Returns whether all positions are finite.
-#[inline(always)]
-fn move_run<T: Real>(
+/// One run of particles on one axis.
+struct Moved<'a, T> {
     run: Run,
     n: usize,
     axis: usize,
-    step: &Step,
-    psi1: &[T],
-    psi2: Option<&[T]>,
-    (x, x_step): (&mut [T], usize),
-    (v, v_step): (&mut [T], usize),
-) -> bool {
-    let cell = step.box_size / n as f64;
-    let along = if axis == 2 { 1.0 } else { 0.0 };
-    let q = run.index[axis] as f64;
-    let edge = T::from_f64(step.box_size);
-    let mut sound = true;
-    for i in 0..run.length {
-        let one = psi1[i].to_f64();
-        let two = psi2.map_or(0.0, |psi2| psi2[i].to_f64());
-        let place = wrap((q + along * i as f64) * cell + (one + two), step.box_size);
-        let speed = step.first_velocity * one + step.second_velocity * two;
-        let place = T::from_f64(place);
-        // Rounding to the mesh's type may reach the far edge, which is the near edge of the next box.
-        let place = if place >= edge { T::ZERO } else { place };
-        let speed = T::from_f64(speed);
-        sound &= place >= T::ZERO && speed.is_finite();
-        x[i * x_step] = place;
-        v[i * v_step] = speed;
+    step: &'a Step,
+    psi1: &'a [T],
+    psi2: Option<&'a [T]>,
+}
+
+impl<T: Real> Moved<'_, T> {
+    /// Hands the position and velocity of each particle to `put`; returns whether all of them are finite.
+    #[inline(always)]
+    fn each(&self, mut put: impl FnMut(usize, T, T)) -> bool {
+        let Self { run, axis, step, .. } = *self;
+        let cell = step.box_size / self.n as f64;
+        let along = if axis == 2 { 1.0 } else { 0.0 };
+        let q = run.index[axis] as f64;
+        let edge = T::from_f64(step.box_size);
+        let mut sound = true;
+        for i in 0..run.length {
+            let one = self.psi1[i].to_f64();
+            let two = self.psi2.map_or(0.0, |psi2| psi2[i].to_f64());
+            let place = T::from_f64(wrap((q + along * i as f64) * cell + (one + two), step.box_size));
+            // Rounding to the mesh's type may reach the far edge, which is the near edge of the next box.
+            let place = if place >= edge { T::ZERO } else { place };
+            let speed = T::from_f64(step.first_velocity * one + step.second_velocity * two);
+            sound &= place >= T::ZERO && speed.is_finite();
+            put(i, place, speed);
+        }
+        sound
     }
-    sound
 }
 
 /// x modulo L; NaN where x is not finite.

@@ -272,7 +272,7 @@ fn particles_do_not_depend_on_the_decomposition() {
         let count = brick.elements();
         let (mut x, mut v) = (vec![0.0; 3 * count], vec![0.0; 3 * count]);
         for axis in 0..3 {
-            let (x, v) = (&mut Components::Triples(&mut x), &mut Components::Triples(&mut v));
+            let (x, v) = (&mut Components::triples(&mut x).unwrap(), &mut Components::triples(&mut v).unwrap());
             displace(x, v, &psi1[first..], Some(&psi2[first..]), brick, axis, &step, &pool).unwrap();
         }
         let mut ids = vec![0; count];
@@ -296,7 +296,7 @@ fn particles_do_not_depend_on_the_decomposition() {
     let (x1, x2) = x1.split_at_mut(216);
     let (v0, v1) = v.split_at_mut(216);
     let (v1, v2) = v1.split_at_mut(216);
-    let (mut separate, mut speeds) = (Components::Separate([x0, x1, x2]), Components::Separate([v0, v1, v2]));
+    let (mut separate, mut speeds) = (Components::separate([x0, x1, x2]).unwrap(), Components::separate([v0, v1, v2]).unwrap());
     for axis in 0..3 {
         displace(&mut separate, &mut speeds, &psi1, Some(&psi2), &whole, axis, &step, &Serial).unwrap();
     }
@@ -314,14 +314,15 @@ fn positions_never_reach_the_far_edge() {
         let psi = [shift; 16];
         let (mut x, mut v) = ([0.0_f32; 24], [0.0_f32; 24]);
         let step = Step { box_size: 100.0, first_velocity: 1.0, second_velocity: 0.0 };
-        let (x, v) = (&mut Components::Triples(&mut x), &mut Components::Triples(&mut v));
-        displace(x, v, &psi, None, &brick, 0, &step, &Serial).unwrap();
-        let Components::Triples(x) = x else { unreachable!() };
+        {
+            let (x, v) = (&mut Components::triples(&mut x).unwrap(), &mut Components::triples(&mut v).unwrap());
+            displace(x, v, &psi, None, &brick, 0, &step, &Serial).unwrap();
+        }
         assert!(x.iter().all(|x| (0.0..100.0).contains(x)), "{shift}: {x:?}");
     }
     let (mut x, mut v) = ([0.0_f32; 24], [0.0_f32; 24]);
     let step = Step { box_size: 100.0, first_velocity: 1.0, second_velocity: 0.0 };
-    let (x, v) = (&mut Components::Triples(&mut x), &mut Components::Triples(&mut v));
+    let (x, v) = (&mut Components::triples(&mut x).unwrap(), &mut Components::triples(&mut v).unwrap());
     assert_eq!(displace(x, v, &[f32::NAN; 16], None, &brick, 0, &step, &Serial), Err(Error::NotFinite));
     assert_eq!(displace(x, v, &[0.0; 16], None, &brick, 3, &step, &Serial), Err(Error::Range));
     assert_eq!(displace(x, v, &[0.0; 3], None, &brick, 0, &step, &Serial), Err(Error::Length));
