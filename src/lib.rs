@@ -27,5 +27,7 @@ pub mod initial;
 
 pub mod estimate;
 
+pub mod capi;
+
 #[cfg(test)]
 mod reference;

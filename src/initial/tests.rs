@@ -272,7 +272,8 @@ fn particles_do_not_depend_on_the_decomposition() {
         let count = brick.elements();
         let (mut x, mut v) = (vec![0.0; 3 * count], vec![0.0; 3 * count]);
         for axis in 0..3 {
-            let (x, v) = (&mut Components::triples(&mut x).unwrap(), &mut Components::triples(&mut v).unwrap());
+            let (x, v) =
+                (&mut Components::triples(&mut x).unwrap(), &mut Components::triples(&mut v).unwrap());
             displace(x, v, &psi1[first..], Some(&psi2[first..]), brick, axis, &step, &pool).unwrap();
         }
         let mut ids = vec![0; count];
@@ -296,7 +297,8 @@ fn particles_do_not_depend_on_the_decomposition() {
     let (x1, x2) = x1.split_at_mut(216);
     let (v0, v1) = v.split_at_mut(216);
     let (v1, v2) = v1.split_at_mut(216);
-    let (mut separate, mut speeds) = (Components::separate([x0, x1, x2]).unwrap(), Components::separate([v0, v1, v2]).unwrap());
+    let (mut separate, mut speeds) =
+        (Components::separate([x0, x1, x2]).unwrap(), Components::separate([v0, v1, v2]).unwrap());
     for axis in 0..3 {
         displace(&mut separate, &mut speeds, &psi1, Some(&psi2), &whole, axis, &step, &Serial).unwrap();
     }
@@ -315,7 +317,8 @@ fn positions_never_reach_the_far_edge() {
         let (mut x, mut v) = ([0.0_f32; 24], [0.0_f32; 24]);
         let step = Step { box_size: 100.0, first_velocity: 1.0, second_velocity: 0.0 };
         {
-            let (x, v) = (&mut Components::triples(&mut x).unwrap(), &mut Components::triples(&mut v).unwrap());
+            let (x, v) =
+                (&mut Components::triples(&mut x).unwrap(), &mut Components::triples(&mut v).unwrap());
             displace(x, v, &psi, None, &brick, 0, &step, &Serial).unwrap();
         }
         assert!(x.iter().all(|x| (0.0..100.0).contains(x)), "{shift}: {x:?}");
