@@ -9,9 +9,9 @@ extern crate std;
 
 pub mod status;
 
-pub mod real;
-
 pub mod scratch;
+
+pub mod real;
 
 pub mod simd;
 

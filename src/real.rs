@@ -1,5 +1,6 @@
 //! The two number types that meshes and particles come in: `f32` and `f64`, from one generic source.
 
+use crate::scratch::Plain;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -17,9 +18,7 @@ pub trait Real:
     + Default
     + PartialEq
     + PartialOrd
-    + Send
-    + Sync
-    + 'static
+    + Plain
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>

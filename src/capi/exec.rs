@@ -14,12 +14,14 @@ use crate::status::{Error, Result};
 /// all calls have returned: 0, or anything else to give up, which makes the kernel return FIXPAIR_ERROR_HOOK with outputs
 /// undefined. Results never depend on it, bit for bit. With OpenMP the whole hook is:
 ///
-///     static int32_t openmp_for(void *context, size_t count, void (*body)(void *, size_t), void *argument) {
-///         (void)context;
-///         #pragma omp parallel for schedule(dynamic)
-///         for (size_t i = 0; i < count; i++) body(argument, i);
-///         return 0;
-///     }
+/// ```c
+/// static int32_t openmp_for(void *context, size_t count, void (*body)(void *, size_t), void *argument) {
+///     (void)context;
+///     #pragma omp parallel for schedule(dynamic)
+///     for (size_t i = 0; i < count; i++) body(argument, i);
+///     return 0;
+/// }
+/// ```
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct fixpair_exec {

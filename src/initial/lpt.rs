@@ -120,7 +120,10 @@ pub(crate) fn second_order_products<T: Real>(
     if m != n && 2 * m < 3 * n {
         return Err(Error::Brick);
     }
-    let [sum, a, b] = meshes;
+    let length = work.length();
+    let [Some(sum), Some(a), Some(b)] = meshes.map(|mesh| mesh.get_mut(..length)) else {
+        return Err(Error::Length);
+    };
     let tidal = |out: &mut [T], i: usize, j: usize, work: &mut dyn Fft3<T>| -> Result<()> {
         map_modes(out, &modes, density, brick, &Tidal(i, j), exec)?;
         work.inverse(out)

@@ -61,7 +61,7 @@ impl<'a, T: Real> Components<'a, T> {
         Self { start, stride, particles, life: PhantomData }
     }
 
-    fn check_length(&self, particles: usize) -> Result<()> {
+    pub(super) fn check_length(&self, particles: usize) -> Result<()> {
         if self.particles == particles { Ok(()) } else { Err(Error::Length) }
     }
 

@@ -87,6 +87,7 @@ pub fn add_local<T: Real>(
         return Ok(());
     }
     let (cells, modes) = (*work.configuration(), *work.fourier());
+    let mesh = mesh.get_mut(..work.length()).ok_or(Error::Length)?;
     map_modes(mesh, &modes, phi, brick, &Copy, exec)?;
     work.inverse(mesh)?;
     let mean_square = if local.g_nl == 0.0 { 0.0 } else { mean_square(mesh, work, partial, exec)? };

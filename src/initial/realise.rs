@@ -6,7 +6,7 @@ use super::particles::{Components, Step, displace};
 use super::png::{Local, add_local};
 use crate::exec::Exec;
 use crate::fft::Fft3;
-use crate::noise::white::{Realisation, white_modes_coloured};
+use crate::noise::{Realisation, white_modes_coloured};
 use crate::real::Real;
 use crate::status::{Error, Result};
 
@@ -96,6 +96,7 @@ pub fn first_order_particles<T: Real>(
     let (modes, cells) = (*fft.fourier(), *fft.configuration());
     let unit = motion.box_size / core::f64::consts::TAU;
     let step = motion.step();
+    let mesh = mesh.get_mut(..fft.length()).ok_or(Error::Length)?;
     for axis in 0..3 {
         displacement(mesh, density, &modes, axis, unit, fft, exec)?;
         displace(position, velocity, mesh, None, &cells, axis, &step, exec)?;
