@@ -2,10 +2,14 @@
 //! `extern "C"` in it. The documentation of each function is written for `fixpair.h`.
 #![allow(non_camel_case_types, reason = "the names of the header")]
 
+pub mod cosmology;
 pub mod estimate;
 pub mod exec;
 pub mod fft;
+pub mod initial;
 pub mod mesh;
+pub mod noise;
+pub mod stages;
 pub mod status;
 
 mod border;

@@ -1,0 +1,330 @@
+//! From unit modes to particles.
+
+use core::ffi::c_void;
+
+use super::border::Border;
+use super::cosmology::{FIXPAIR_CONVENTION_CMB, fixpair_cosmology, fixpair_linear};
+use super::exec::{HostExec, fixpair_exec};
+use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
+use super::noise::fixpair_realisation;
+use super::status::{code, fixpair_status_t};
+use crate::cosmology::{Convention, Cosmology};
+use crate::fft::Fft3;
+use crate::initial::conditions::{
+    InitialConditions, Order, initial_conditions, initial_conditions_scratch,
+};
+use crate::initial::particles::Components;
+use crate::initial::png::Local;
+use crate::real::Real;
+use crate::scratch::Layout;
+use crate::status::{Error, Result};
+
+/// Zel'dovich displacements.
+pub const FIXPAIR_ORDER_FIRST: i32 = 1;
+/// Second-order Lagrangian perturbation theory.
+pub const FIXPAIR_ORDER_SECOND: i32 = 2;
+
+/// A universe, and when and how large to start it: everything that fixpair_initial_conditions_f64 asks.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct fixpair_conditions {
+    /// sizeof(fixpair_conditions).
+    pub struct_size: usize,
+    /// Seed, amplitudes, phase.
+    pub realisation: fixpair_realisation,
+    /// Background of the simulation that will run.
+    pub cosmology: fixpair_cosmology,
+    /// Linear spectrum of z = 0.
+    pub linear: fixpair_linear,
+    /// Redshift of the particles.
+    pub redshift: f64,
+    /// Side of the box in Mpc/h.
+    pub box_size: f64,
+    /// Phi = Phi_G + f_nl (Phi_G^2 - <Phi_G^2>) + g_nl (Phi_G^3 - 3 <Phi_G^2> Phi_G).
+    pub f_nl: f64,
+    /// See f_nl.
+    pub g_nl: f64,
+    /// In which convention f_nl and g_nl are: FIXPAIR_CONVENTION_CMB or _LSS.
+    pub convention: i32,
+    /// FIXPAIR_ORDER_FIRST or _SECOND.
+    pub order: i32,
+}
+
+/// Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
+/// of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
+/// sizeof(struct) / sizeof(f64).
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct fixpair_components_f64 {
+    /// First x.
+    pub x: *mut f64,
+    /// First y.
+    pub y: *mut f64,
+    /// First z.
+    pub z: *mut f64,
+    /// From one particle to the next, in elements.
+    pub stride: usize,
+    /// Particles.
+    pub length: usize,
+}
+
+impl Triple for fixpair_components_f64 {
+    type Real = f64;
+
+    fn parts(&self) -> ([*mut f64; 3], usize, usize) {
+        ([self.x, self.y, self.z], self.stride, self.length)
+    }
+}
+
+/// Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
+/// of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
+/// sizeof(struct) / sizeof(f32).
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct fixpair_components_f32 {
+    /// First x.
+    pub x: *mut f32,
+    /// First y.
+    pub y: *mut f32,
+    /// First z.
+    pub z: *mut f32,
+    /// From one particle to the next, in elements.
+    pub stride: usize,
+    /// Particles.
+    pub length: usize,
+}
+
+impl Triple for fixpair_components_f32 {
+    type Real = f32;
+
+    fn parts(&self) -> ([*mut f32; 3], usize, usize) {
+        ([self.x, self.y, self.z], self.stride, self.length)
+    }
+}
+
+/// The two component structs, as one.
+pub(super) trait Triple: Copy {
+    type Real: Real;
+
+    /// Starts, stride, particles.
+    fn parts(&self) -> ([*mut Self::Real; 3], usize, usize);
+}
+
+/// # Safety
+/// `pointer` is null or points to components whose elements nobody else touches.
+pub(super) unsafe fn components<'a, C: Triple>(border: &mut Border, pointer: *const C) -> Result<Components<'a, C::Real>> {
+    // SAFETY: the caller's promise.
+    let (start, stride, length) = unsafe { border.read_one(pointer) }?.parts();
+    if stride == 0 {
+        return Err(Error::Range);
+    }
+    for first in start {
+        border.strided(first, stride, length)?;
+    }
+    // SAFETY: the border has checked that elements are aligned and apart; the rest is the caller's promise.
+    Ok(unsafe { Components::strided(start, stride, length) })
+}
+
+/// # Safety
+/// `pointer` is null or points to a hook that keeps its contract.
+unsafe fn optional_fft<H: Hook>(border: &mut Border, pointer: *const H) -> Result<Option<HostFft<H::Real>>> {
+    // SAFETY: the caller's promise.
+    if pointer.is_null() { Ok(None) } else { unsafe { HostFft::new(border, pointer) }.map(Some) }
+}
+
+fn some_dyn<T: Real>(fft: &mut Option<HostFft<T>>) -> Option<&mut dyn Fft3<T>> {
+    fft.as_mut().map(|fft| {
+        let fft: &mut dyn Fft3<T> = fft;
+        fft
+    })
+}
+
+/// Fills the conditions: the GOLIAT cosmology, a normal original Gaussian field, second order, z = 32, a box of 1000 Mpc/h, and the Eisenstein-Hu
+/// spectrum with sigma8 = 0.8. Change what differs in yours; give your own spectrum in `linear`.
+///
+/// Out: conditions
+/// In:  seed
+/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT
+///
+/// # Safety
+/// `conditions` is null or points to one.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_conditions_init(conditions: *mut fixpair_conditions, seed: u64) -> fixpair_status_t {
+    code((|| {
+        // SAFETY: the caller's promise.
+        let out = unsafe { Border::new().write_one(conditions) }?;
+        *out = fixpair_conditions {
+            struct_size: size_of::<fixpair_conditions>(),
+            realisation: fixpair_realisation::new(seed),
+            cosmology: fixpair_cosmology::new(Cosmology::goliat()),
+            linear: fixpair_linear::eisenstein_hu(0.8),
+            redshift: 32.0,
+            box_size: 1000.0,
+            f_nl: 0.0,
+            g_nl: 0.0,
+            convention: FIXPAIR_CONVENTION_CMB,
+            order: FIXPAIR_ORDER_SECOND,
+        };
+        Ok(())
+    })())
+}
+
+impl fixpair_conditions {
+    /// # Safety
+    /// The table of `linear` is null or points to as many values as it says.
+    unsafe fn check<'a>(&self, border: &mut Border) -> Result<InitialConditions<'a>> {
+        if self.struct_size != size_of::<Self>() {
+            return Err(Error::Version);
+        }
+        let cosmology = self.cosmology.check()?;
+        Ok(InitialConditions {
+            realisation: self.realisation.check()?,
+            cosmology,
+            // SAFETY: the caller's promise.
+            linear: unsafe { self.linear.check(border, &cosmology) }?,
+            redshift: self.redshift,
+            box_size: self.box_size,
+            local: Local { f_nl: self.f_nl, g_nl: self.g_nl },
+            convention: Convention::try_from(self.convention)?,
+            order: Order::try_from(self.order)?,
+        })
+    }
+}
+
+/// Scratch of fixpair_initial_conditions_f64: at second order one mesh of fft->length reals and three of the longer of fft->length and
+/// fine->length (4 reals a cell without `fine`); at first order one and one. And 16 bytes for each |n|^2 up to 3 (n/2)^2 and 8 for
+/// each plane, each array rounded up to 64 bytes.
+///
+/// Out: scratch
+/// In:  conditions  only the order is read
+///      fft, fine   as fixpair_initial_conditions_f64
+/// Returns: 0, FIXPAIR_ERROR_NULL, _VERSION, _CHOICE, _OVERFLOW, or why a hook is refused
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated; the hooks keep their contracts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_initial_conditions_scratch_f64(
+    scratch: *mut Layout,
+    conditions: *const fixpair_conditions,
+    fft: *const fixpair_fft_f64,
+    fine: *const fixpair_fft_f64,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { conditions_scratch(scratch, conditions, fft, fine) })
+}
+
+/// fixpair_initial_conditions_scratch_f64 in single precision.
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated; the hooks keep their contracts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_initial_conditions_scratch_f32(
+    scratch: *mut Layout,
+    conditions: *const fixpair_conditions,
+    fft: *const fixpair_fft_f32,
+    fine: *const fixpair_fft_f32,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { conditions_scratch(scratch, conditions, fft, fine) })
+}
+
+unsafe fn conditions_scratch<H: Hook>(
+    scratch: *mut Layout,
+    conditions: *const fixpair_conditions,
+    fft: *const H,
+    fine: *const H,
+) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise.
+    unsafe {
+        let scratch = border.write_one(scratch)?;
+        let conditions = border.read_one(conditions)?;
+        if conditions.struct_size != size_of::<fixpair_conditions>() {
+            return Err(Error::Version);
+        }
+        let order = Order::try_from(conditions.order)?;
+        let fft = HostFft::new(&mut border, fft)?;
+        let mut fine = optional_fft(&mut border, fine)?;
+        *scratch = initial_conditions_scratch(order, &fft, some_dyn(&mut fine).as_deref())?;
+        Ok(())
+    }
+}
+
+/// One call from a seed to particles: Fixed, Paired or Matched initial conditions with local primordial non-Gaussianity, in the only right order:
+/// noise -> fix -> invert -> colour -> PNG -> transfer -> displace.
+///
+/// One particle for each cell of fft->configuration, numbered with z fastest; ids from fixpair_particle_ids. Two calls that differ in
+/// phase give a pair; two that differ in f_nl, cosmology or redshift, with one seed, are matched.
+///
+/// Out: position    Mpc/h, in [0, L): length = cells of fft->configuration
+///      velocity    peculiar, km/s (Gadget files store it divided by sqrt(a)): the same length
+/// In:  conditions
+///      fft         the transform; its bricks decide which part of the mesh and so which particles this process makes
+///      fine        a transform of side 3n/2 or more (2n with g_nl), on which products are free of aliasing; NULL to let them alias.
+///                  On more than one process it must hold, locally, the modes that `fft` holds
+///      scratch     scratch_len bytes, see fixpair_initial_conditions_scratch_f64
+///      exec        or NULL
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _TABLE, _SCRATCH, _CHOICE, _VERSION, _BRICK for a
+///          `fine` that is too small; after FIXPAIR_ERROR_HOOK, or FIXPAIR_ERROR_NOT_FINITE from fields that overflow, position and
+///          velocity are undefined
+/// Cost: at second order 13 transforms (2 more with f_nl or g_nl)
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated; the hooks keep their contracts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_initial_conditions_f64(
+    position: *const fixpair_components_f64,
+    velocity: *const fixpair_components_f64,
+    conditions: *const fixpair_conditions,
+    fft: *const fixpair_fft_f64,
+    fine: *const fixpair_fft_f64,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { all(position, velocity, conditions, fft, fine, scratch, scratch_len, exec) })
+}
+
+/// fixpair_initial_conditions_f64 in single precision.
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated; the hooks keep their contracts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_initial_conditions_f32(
+    position: *const fixpair_components_f32,
+    velocity: *const fixpair_components_f32,
+    conditions: *const fixpair_conditions,
+    fft: *const fixpair_fft_f32,
+    fine: *const fixpair_fft_f32,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { all(position, velocity, conditions, fft, fine, scratch, scratch_len, exec) })
+}
+
+unsafe fn all<H: Hook, C: Triple<Real = H::Real>>(
+    position: *const C,
+    velocity: *const C,
+    conditions: *const fixpair_conditions,
+    fft: *const H,
+    fine: *const H,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise.
+    unsafe {
+        let mut position = components(&mut border, position)?;
+        let mut velocity = components(&mut border, velocity)?;
+        let conditions = border.read_one(conditions)?.check(&mut border)?;
+        let mut fft = HostFft::new(&mut border, fft)?;
+        let mut fine = optional_fft(&mut border, fine)?;
+        let scratch = border.scratch(scratch, scratch_len)?;
+        let (fine, exec) = (some_dyn(&mut fine), HostExec::new(exec)?);
+        initial_conditions(&mut position, &mut velocity, &conditions, &mut fft, fine, scratch, &exec)
+    }
+}
