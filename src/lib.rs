@@ -11,6 +11,8 @@ pub mod status;
 
 pub mod real;
 
+pub mod math;
+
 pub mod scratch;
 
 pub mod simd;
@@ -22,3 +24,8 @@ pub mod exec;
 pub mod walk;
 
 pub mod fft;
+
+pub mod noise;
+
+#[cfg(test)]
+mod reference;
