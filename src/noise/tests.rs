@@ -448,7 +448,7 @@ fn a_bad_field_is_refused_before_it_is_transformed() {
     let mut fft = Direct { cells, modes: whole(n) };
     let mut data = vec![1.0; fft.length()];
     let length = data.len();
-    let mut call = |fft: &mut Direct, data: &mut [f64]| {
+    let call = |fft: &mut Direct, data: &mut [f64]| {
         unit_modes_from_field(fft, data, Amplitude::Fixed, Phase::Original, Nyquist::Zero, &Serial)
     };
     assert_eq!(call(&mut fft, &mut data[..length - 1]), Err(Error::Length));
