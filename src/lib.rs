@@ -13,6 +13,8 @@ pub mod scratch;
 
 pub mod real;
 
+pub mod math;
+
 pub mod simd;
 
 pub mod mesh;
@@ -23,11 +25,11 @@ pub mod walk;
 
 pub mod fft;
 
+pub mod noise;
+
 pub mod initial;
 
 pub mod estimate;
-
-pub mod capi;
 
 #[cfg(test)]
 mod reference;

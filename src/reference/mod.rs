@@ -1,4 +1,5 @@
-//! Slow and obvious versions of the kernels: what the tests believe.
+//! Slow and obvious versions of the kernels: the oracles of the tests.
 
 pub(crate) mod convolution;
 pub(crate) mod transform;
+pub(crate) mod white;
