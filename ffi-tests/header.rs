@@ -1,0 +1,109 @@
+//! `include/fixpair.h` is what cbindgen makes of `src/capi`: generated here, compared, and written where FIXPAIR_BLESS=1 asks for it.
+
+use std::path::{Path, PathBuf};
+
+/// The files whose items the header holds, in its order, with the title of each section of functions.
+const SECTIONS: [(&str, &str); 9] = [
+    ("status", "Statuses and version"),
+    ("mesh", "Meshes and bricks"),
+    ("exec", "Threads"),
+    ("fft", "Transform"),
+    ("noise", "Random modes"),
+    ("cosmology", "Cosmology"),
+    ("initial", "Initial conditions in one call"),
+    ("stages", "Initial conditions stage by stage"),
+    ("estimate", "Spectra"),
+];
+
+/// Files outside `src/capi` that define structs of the interface.
+const STRUCTS: [&str; 3] = ["src/scratch.rs", "src/cosmology/growth.rs", "src/estimate/power.rs"];
+
+const PREAMBLE: &str = include_str!("header_preamble.h");
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn generate() -> String {
+    let mut config = cbindgen::Config {
+        language: cbindgen::Language::C,
+        cpp_compat: true,
+        include_guard: Some("FIXPAIR_H".into()),
+        no_includes: true,
+        sys_includes: vec!["stddef.h".into(), "stdint.h".into()],
+        usize_is_size_t: true,
+        style: cbindgen::Style::Both,
+        documentation_style: cbindgen::DocumentationStyle::C,
+        header: Some(PREAMBLE.trim_end().into()),
+        line_length: 110,
+        ..cbindgen::Config::default()
+    };
+    config.function.sort_by = Some(cbindgen::SortKey::None);
+    for (rust, c) in [("Layout", "fixpair_layout"), ("Growth", "fixpair_growth"), ("Bin", "fixpair_bin")] {
+        config.export.rename.insert(rust.into(), c.into());
+    }
+    config.defines.insert("feature = std".into(), "FIXPAIR_THREADS".into());
+    let mut builder = cbindgen::Builder::new().with_config(config);
+    for file in STRUCTS {
+        builder = builder.with_src(root().join(file));
+    }
+    for (file, _) in SECTIONS {
+        builder = builder.with_src(root().join("src/capi").join(file).with_extension("rs"));
+    }
+    let mut header = Vec::new();
+    builder.generate().expect("cbindgen understands src/capi").write(&mut header);
+    polish(&String::from_utf8(header).expect("a header is text"))
+}
+
+/// Drops what is meant for Rust readers, and puts a title before each section's first function.
+fn polish(header: &str) -> String {
+    let firsts: Vec<(String, &str)> = SECTIONS
+        .iter()
+        .map(|&(file, title)| {
+            let source = std::fs::read_to_string(root().join("src/capi").join(file).with_extension("rs"));
+            let source = source.expect("a file of src/capi");
+            let after = source.split("extern \"C\" fn fixpair_").nth(1);
+            let name: String = after
+                .unwrap_or_default()
+                .chars()
+                .take_while(|c| c.is_ascii_alphanumeric() || *c == '_')
+                .collect();
+            (format!("fixpair_{name}("), title)
+        })
+        .collect();
+    let mut lines: Vec<String> = Vec::new();
+    let mut comment = 0; // where the last comment began
+    let mut skipping = false;
+    for line in header.lines() {
+        if line.starts_with("/**") {
+            comment = lines.len();
+        }
+        if line.trim_start().starts_with("* # Safety") {
+            skipping = true;
+            while lines.last().is_some_and(|last| last.trim() == "*") {
+                lines.pop();
+            }
+        }
+        skipping &= !line.trim_start().starts_with("*/");
+        if skipping || line.contains("```") {
+            continue;
+        }
+        if let Some((_, title)) = firsts.iter().find(|(name, _)| line.contains(name.as_str()) && !line.starts_with(" *")) {
+            let rule = "=".repeat(title.len());
+            lines.insert(comment, format!("/*\n * {title}\n * {rule}\n */\n"));
+        }
+        lines.push(line.trim_end().to_owned());
+    }
+    lines.join("\n") + "\n"
+}
+
+#[test]
+fn header_is_current() {
+    let path = root().join("include/fixpair.h");
+    let generated = generate();
+    if std::env::var_os("FIXPAIR_BLESS").is_some() {
+        std::fs::write(&path, &generated).expect("include/ can be written");
+    }
+    let committed = std::fs::read_to_string(Path::new(&path)).unwrap_or_default();
+    assert!(committed == generated, "include/fixpair.h is stale: run FIXPAIR_BLESS=1 cargo test --test ffi header");
+}

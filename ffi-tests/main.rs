@@ -1,0 +1,3 @@
+//! The C interface as C, C++ and Python see it.
+
+mod header;
