@@ -22,3 +22,5 @@ pub mod exec;
 pub mod walk;
 
 pub mod fft;
+
+pub mod cosmology;
