@@ -88,7 +88,9 @@ fn polish(header: &str) -> String {
         if skipping || line.contains("```") {
             continue;
         }
-        if let Some((_, title)) = firsts.iter().find(|(name, _)| line.contains(name.as_str()) && !line.starts_with(" *")) {
+        if let Some((_, title)) =
+            firsts.iter().find(|(name, _)| line.contains(name.as_str()) && !line.starts_with(" *"))
+        {
             let rule = "=".repeat(title.len());
             lines.insert(comment, format!("/*\n * {title}\n * {rule}\n */\n"));
         }
@@ -105,5 +107,8 @@ fn header_is_current() {
         std::fs::write(&path, &generated).expect("include/ can be written");
     }
     let committed = std::fs::read_to_string(Path::new(&path)).unwrap_or_default();
-    assert!(committed == generated, "include/fixpair.h is stale: run FIXPAIR_BLESS=1 cargo test --test ffi header");
+    assert!(
+        committed == generated,
+        "include/fixpair.h is stale: run FIXPAIR_BLESS=1 cargo test --test ffi header"
+    );
 }

@@ -27,9 +27,13 @@ pub mod fft;
 
 pub mod noise;
 
+pub mod cosmology;
+
 pub mod initial;
 
 pub mod estimate;
+
+pub mod capi;
 
 #[cfg(test)]
 mod reference;

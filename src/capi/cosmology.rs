@@ -4,8 +4,8 @@ use super::border::Border;
 use super::exec::{HostExec, fixpair_exec};
 use super::status::{code, fixpair_status_t};
 use crate::cosmology::{
-    Convention, Cosmology, EisensteinHu, Growth, Linear, Poisson, Table, Wiggles, alpha_table, g_ratio, growth_many,
-    mode_table_length, potential_amplitude_table, primordial_amplitude, radiation_density,
+    Convention, Cosmology, EisensteinHu, Growth, Linear, Poisson, Table, Wiggles, alpha_table, g_ratio,
+    growth_many, mode_table_length, potential_amplitude_table, primordial_amplitude, radiation_density,
 };
 use crate::status::{Error, Result};
 
@@ -134,7 +134,8 @@ impl fixpair_linear {
         let linear = match self.source {
             FIXPAIR_LINEAR_POWER | FIXPAIR_LINEAR_TRANSFER => {
                 // SAFETY: the caller's promise.
-                let (k, value) = unsafe { (border.read(self.k, self.rows)?, border.read(self.value, self.rows)?) };
+                let (k, value) =
+                    unsafe { (border.read(self.k, self.rows)?, border.read(self.value, self.rows)?) };
                 let table = Table::new(k, value)?;
                 if self.source == FIXPAIR_LINEAR_TRANSFER {
                     Linear::from_transfer(table, cosmology.n_s, first)?
@@ -150,7 +151,11 @@ impl fixpair_linear {
             }
             _ => return Err(Error::Choice),
         };
-        if self.normalisation == FIXPAIR_NORMALISE_SIGMA8 { linear.with_sigma8(self.amount) } else { Ok(linear) }
+        if self.normalisation == FIXPAIR_NORMALISE_SIGMA8 {
+            linear.with_sigma8(self.amount)
+        } else {
+            Ok(linear)
+        }
     }
 }
 

@@ -10,9 +10,7 @@ use super::noise::fixpair_realisation;
 use super::status::{code, fixpair_status_t};
 use crate::cosmology::{Convention, Cosmology};
 use crate::fft::Fft3;
-use crate::initial::conditions::{
-    InitialConditions, Order, initial_conditions, initial_conditions_scratch,
-};
+use crate::initial::conditions::{InitialConditions, Order, initial_conditions, initial_conditions_scratch};
 use crate::initial::particles::Components;
 use crate::initial::png::Local;
 use crate::real::Real;
@@ -112,7 +110,10 @@ pub(super) trait Triple: Copy {
 
 /// # Safety
 /// `pointer` is null or points to components whose elements nobody else touches.
-pub(super) unsafe fn components<'a, C: Triple>(border: &mut Border, pointer: *const C) -> Result<Components<'a, C::Real>> {
+pub(super) unsafe fn components<'a, C: Triple>(
+    border: &mut Border,
+    pointer: *const C,
+) -> Result<Components<'a, C::Real>> {
     // SAFETY: the caller's promise.
     let (start, stride, length) = unsafe { border.read_one(pointer) }?.parts();
     if stride == 0 {
@@ -149,7 +150,10 @@ fn some_dyn<T: Real>(fft: &mut Option<HostFft<T>>) -> Option<&mut dyn Fft3<T>> {
 /// # Safety
 /// `conditions` is null or points to one.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fixpair_conditions_init(conditions: *mut fixpair_conditions, seed: u64) -> fixpair_status_t {
+pub unsafe extern "C" fn fixpair_conditions_init(
+    conditions: *mut fixpair_conditions,
+    seed: u64,
+) -> fixpair_status_t {
     code((|| {
         // SAFETY: the caller's promise.
         let out = unsafe { Border::new().write_one(conditions) }?;

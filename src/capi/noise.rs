@@ -6,7 +6,8 @@ use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
 use super::mesh::fixpair_brick;
 use super::status::{code, fixpair_status_t};
 use crate::fft::Fft3;
-use crate::noise::{Realisation, impose, philox4x32_10, unit_modes_from_field, white_modes, white_modes_coloured};
+use crate::noise::philox::philox4x32_10;
+use crate::noise::{Realisation, impose, unit_modes_from_field, white_modes, white_modes_coloured};
 use crate::real::Real;
 use crate::status::{Error, Result};
 

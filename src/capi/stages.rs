@@ -167,10 +167,7 @@ pub unsafe extern "C" fn fixpair_add_local_scratch_f32(
     code(unsafe { local_scratch(scratch, work) })
 }
 
-unsafe fn local_scratch<H: Hook>(
-    scratch: *mut Layout,
-    work: *const H,
-) -> Result<()> {
+unsafe fn local_scratch<H: Hook>(scratch: *mut Layout, work: *const H) -> Result<()> {
     let mut border = Border::new();
     // SAFETY: the caller's promise.
     unsafe {
@@ -293,7 +290,21 @@ pub unsafe extern "C" fn fixpair_second_order_source_f64(
     exec: *const fixpair_exec,
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
-    code(unsafe { source_modes(source, source_len, density, density_len, brick, work, mesh1, mesh2, mesh3, mesh_len, exec) })
+    code(unsafe {
+        source_modes(
+            source,
+            source_len,
+            density,
+            density_len,
+            brick,
+            work,
+            mesh1,
+            mesh2,
+            mesh3,
+            mesh_len,
+            exec,
+        )
+    })
 }
 
 /// fixpair_second_order_source_f64 in single precision.
@@ -315,7 +326,21 @@ pub unsafe extern "C" fn fixpair_second_order_source_f32(
     exec: *const fixpair_exec,
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
-    code(unsafe { source_modes(source, source_len, density, density_len, brick, work, mesh1, mesh2, mesh3, mesh_len, exec) })
+    code(unsafe {
+        source_modes(
+            source,
+            source_len,
+            density,
+            density_len,
+            brick,
+            work,
+            mesh1,
+            mesh2,
+            mesh3,
+            mesh_len,
+            exec,
+        )
+    })
 }
 
 unsafe fn source_modes<H: Hook>(
@@ -338,11 +363,8 @@ unsafe fn source_modes<H: Hook>(
         let density = border.read(density, density_len)?;
         let brick = border.read_one(brick)?.check()?;
         let mut work = HostFft::new(&mut border, work)?;
-        let meshes = [
-            border.write(mesh1, mesh_len)?,
-            border.write(mesh2, mesh_len)?,
-            border.write(mesh3, mesh_len)?,
-        ];
+        let meshes =
+            [border.write(mesh1, mesh_len)?, border.write(mesh2, mesh_len)?, border.write(mesh3, mesh_len)?];
         let exec = HostExec::new(exec)?;
         lpt::second_order_source(source, density, &brick, &mut work, meshes, &exec)
     }
@@ -454,7 +476,9 @@ pub unsafe extern "C" fn fixpair_displace_f64(
     exec: *const fixpair_exec,
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
-    code(unsafe { move_particles(position, velocity, psi1, psi2, psi_len, brick, axis, box_size, c1, c2, exec) })
+    code(unsafe {
+        move_particles(position, velocity, psi1, psi2, psi_len, brick, axis, box_size, c1, c2, exec)
+    })
 }
 
 /// fixpair_displace_f64 in single precision.
@@ -476,7 +500,9 @@ pub unsafe extern "C" fn fixpair_displace_f32(
     exec: *const fixpair_exec,
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
-    code(unsafe { move_particles(position, velocity, psi1, psi2, psi_len, brick, axis, box_size, c1, c2, exec) })
+    code(unsafe {
+        move_particles(position, velocity, psi1, psi2, psi_len, brick, axis, box_size, c1, c2, exec)
+    })
 }
 
 unsafe fn move_particles<C: Triple>(

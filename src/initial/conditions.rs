@@ -112,7 +112,7 @@ struct Sizes {
 }
 
 impl Sizes {
-    fn new<T: Real>(order: Order, fft: &dyn Fft3<T>, fine: Option<&dyn Fft3<T>>) -> Result<Self> {
+    fn new<T: Real>(order: Order, fft: &dyn Fft3<T>, fine: Option<&(dyn Fft3<T> + '_)>) -> Result<Self> {
         let work = fine.unwrap_or(fft);
         Ok(Self {
             table: mode_table_length(fft.configuration().n())?,
@@ -144,7 +144,7 @@ impl Sizes {
 pub fn initial_conditions_scratch<T: Real>(
     order: Order,
     fft: &dyn Fft3<T>,
-    fine: Option<&dyn Fft3<T>>,
+    fine: Option<&(dyn Fft3<T> + '_)>,
 ) -> Result<Layout> {
     Sizes::new(order, fft, fine)?.layout::<T>()
 }
@@ -165,7 +165,7 @@ pub fn initial_conditions<T: Real>(
     velocity: &mut Components<'_, T>,
     conditions: &InitialConditions<'_>,
     fft: &mut dyn Fft3<T>,
-    mut fine: Option<&mut dyn Fft3<T>>,
+    mut fine: Option<&mut (dyn Fft3<T> + '_)>,
     scratch: &mut [u8],
     exec: &dyn Exec,
 ) -> Result<()> {

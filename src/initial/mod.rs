@@ -4,10 +4,12 @@
 //! one call; the stages are public, one file each. Modes are normalised so that an inverse transform without a factor
 //! gives the field: f(x) = sum_k f_k exp(+i k.x).
 
+pub mod conditions;
 pub mod lpt;
 pub mod modes;
 pub mod particles;
 pub mod png;
+pub mod realise;
 
 #[cfg(test)]
 mod tests;

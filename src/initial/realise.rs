@@ -38,9 +38,9 @@ pub struct Motion {
 
 /// The transform on which products are taken: that of the field itself, or one of a finer mesh that keeps them free of
 /// aliasing.
-pub(crate) fn product_mesh<'a, T: Real>(
+fn product_mesh<'a, T: Real>(
     fft: &'a mut dyn Fft3<T>,
-    fine: Option<&'a mut dyn Fft3<T>>,
+    fine: Option<&'a mut (dyn Fft3<T> + '_)>,
 ) -> &'a mut dyn Fft3<T> {
     match fine {
         Some(fine) => fine,
@@ -62,7 +62,7 @@ pub fn linear_density<T: Real>(
     density: &mut [T],
     field: &Field<'_>,
     fft: &mut dyn Fft3<T>,
-    fine: Option<&mut dyn Fft3<T>>,
+    fine: Option<&mut (dyn Fft3<T> + '_)>,
     mesh: &mut [T],
     partial: &mut [[f64; 1]],
     exec: &dyn Exec,
@@ -119,7 +119,7 @@ pub fn second_order_particles<T: Real>(
     density: &[T],
     motion: &Motion,
     fft: &mut dyn Fft3<T>,
-    mut fine: Option<&mut dyn Fft3<T>>,
+    mut fine: Option<&mut (dyn Fft3<T> + '_)>,
     meshes: [&mut [T]; 3],
     exec: &dyn Exec,
 ) -> Result<()> {
