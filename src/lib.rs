@@ -22,3 +22,6 @@ pub mod exec;
 pub mod walk;
 
 pub mod fft;
+
+#[cfg(test)]
+mod reference;

@@ -1,0 +1,3 @@
+//! Slow and obvious versions of the kernels: the oracles of the tests.
+
+pub(crate) mod dft;
