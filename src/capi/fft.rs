@@ -3,8 +3,8 @@
 use core::ffi::c_void;
 
 use super::border::Border;
-use super::mesh::fixpair_brick;
 use super::exec::{HostExec, fixpair_exec};
+use super::mesh::fixpair_brick;
 use super::status::{code, fixpair_status_t};
 use crate::fft::{Fft3, Tables, Transform, next_side, recommended_padding, self_test};
 use crate::mesh::{Brick, Space};
@@ -97,7 +97,8 @@ macro_rules! hook {
             }
 
             fn from_parts(parts: Parts<$real>) -> Self {
-                let Parts { struct_size, context, forward, inverse, sum, configuration, fourier, length } = parts;
+                let Parts { struct_size, context, forward, inverse, sum, configuration, fourier, length } =
+                    parts;
                 Self { struct_size, context, forward, inverse, sum, configuration, fourier, length }
             }
         }
@@ -212,10 +213,7 @@ pub extern "C" fn fixpair_fft_next_side(least: usize) -> usize {
 /// # Safety
 /// Pointers are null or point to as many values as stated; hooks keep their contracts.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fixpair_fft_tables_scratch_f64(
-    size: *mut Layout,
-    n: usize,
-) -> fixpair_status_t {
+pub unsafe extern "C" fn fixpair_fft_tables_scratch_f64(size: *mut Layout, n: usize) -> fixpair_status_t {
     // SAFETY: the caller's promise.
     code(unsafe { put_layout(size, || Tables::<f64>::layout(n)) })
 }
@@ -225,10 +223,7 @@ pub unsafe extern "C" fn fixpair_fft_tables_scratch_f64(
 /// # Safety
 /// Pointers are null or point to as many values as stated; hooks keep their contracts.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fixpair_fft_tables_scratch_f32(
-    size: *mut Layout,
-    n: usize,
-) -> fixpair_status_t {
+pub unsafe extern "C" fn fixpair_fft_tables_scratch_f32(size: *mut Layout, n: usize) -> fixpair_status_t {
     // SAFETY: the caller's promise.
     code(unsafe { put_layout(size, || Tables::<f32>::layout(n)) })
 }
@@ -274,10 +269,7 @@ pub unsafe extern "C" fn fixpair_fft_tables_init_f32(
 /// # Safety
 /// Pointers are null or point to as many values as stated; hooks keep their contracts.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fixpair_fft_scratch_f64(
-    size: *mut Layout,
-    n: usize,
-) -> fixpair_status_t {
+pub unsafe extern "C" fn fixpair_fft_scratch_f64(size: *mut Layout, n: usize) -> fixpair_status_t {
     // SAFETY: the caller's promise.
     code(unsafe { put_layout(size, || workspace_layout::<f64>(n)) })
 }
@@ -287,10 +279,7 @@ pub unsafe extern "C" fn fixpair_fft_scratch_f64(
 /// # Safety
 /// Pointers are null or point to as many values as stated; hooks keep their contracts.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fixpair_fft_scratch_f32(
-    size: *mut Layout,
-    n: usize,
-) -> fixpair_status_t {
+pub unsafe extern "C" fn fixpair_fft_scratch_f32(size: *mut Layout, n: usize) -> fixpair_status_t {
     // SAFETY: the caller's promise.
     code(unsafe { put_layout(size, || workspace_layout::<f32>(n)) })
 }

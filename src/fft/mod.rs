@@ -8,10 +8,30 @@
 //! into a pass they make anyway. Both bricks describe one array of `length` reals; reals outside the bricks
 //! (the padding of rows) hold nothing and may be overwritten. The imaginary parts of self-conjugate modes are
 //! read as zero or as anything else that a real field cannot hold: callers pass Hermitian modes.
+//!
+//! The built-in transform ([`Transform`]) holds every vector lane of the processor in another row or column of the mesh,
+//! so that no data moves between lanes except where rows are turned. Its [`Tables`] and workspace are the caller's.
 
 use crate::mesh::Brick;
 use crate::real::Real;
 use crate::status::Result;
+
+mod access;
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod butterfly;
+mod lanes;
+mod passes;
+mod rows;
+mod self_test;
+mod sides;
+mod tables;
+mod transform;
+
+pub use self_test::self_test;
+pub use sides::next_side;
+pub use tables::Tables;
+pub use transform::{Transform, recommended_padding};
 
 /// A transform of one mesh: the built-in one or the caller's.
 pub trait Fft3<T: Real> {
@@ -41,3 +61,6 @@ pub trait Fft3<T: Real> {
         if self.configuration().is_whole() { Ok(()) } else { Err(crate::status::Error::Hook) }
     }
 }
+
+#[cfg(test)]
+mod tests;
