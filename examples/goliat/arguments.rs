@@ -111,11 +111,11 @@ impl Arguments {
 fn transformable(size: usize) -> bool {
     let mut rest = size;
     for factor in [2, 3, 5, 7] {
-        while rest > 0 && rest % factor == 0 {
+        while rest > 0 && rest.is_multiple_of(factor) {
             rest /= factor;
         }
     }
-    rest == 1 && size % 2 == 0
+    rest == 1 && size.is_multiple_of(2)
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ mod statistics;
 mod suite;
 mod text;
 
+use std::io::Write as _;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -38,7 +39,7 @@ fn main() -> ExitCode {
 
 fn answer(request: Request) -> Result<(), Failure> {
     match request {
-        Request::Help => print!("{}", arguments::HELP),
+        Request::Help => say(arguments::HELP)?,
         Request::Run(arguments) => run(&arguments)?,
     }
     Ok(())
@@ -56,7 +57,6 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress.finish();
     let elapsed = start.elapsed();
 
-    print!("{}", report::text(&suite, arguments.threads, elapsed));
     for (name, content) in report::tables(&suite) {
         std::fs::write(output.join(name), content).map_err(unwritable)?;
     }
@@ -70,8 +70,14 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress.finish();
 
     let names: Vec<_> = pictures.iter().map(|(name, _)| *name).collect();
-    println!("\nFigures ({}; PNG and SVG) and tables (CSV) are in {}", names.join(", "), output.display());
-    Ok(())
+    let table = report::text(&suite, arguments.threads, elapsed);
+    let (names, folder) = (names.join(", "), output.display());
+    say(&format!("{table}\nFigures ({names}; PNG and SVG) and tables (CSV) are in {folder}\n"))
+}
+
+/// Unlike `print!`, does not panic where the reader has gone.
+fn say(text: &str) -> Result<(), Failure> {
+    Ok(std::io::stdout().write_all(text.as_bytes())?)
 }
 
 /// A bar on the terminal's error stream; silent where that is not a terminal.

@@ -28,7 +28,7 @@ pub(super) fn draw(suite: &Suite) -> Drawing {
         let x = k_axis(suite);
         let reach = 1.6 * bands[0].deviation[0] / bands[0].mean[0];
         let means = Axes { area: upper, x, y: Axis::linear(1.0 - reach, 1.0 + reach) };
-        let scatter = Axes { area: lower, x, y: Axis::logarithmic(0.5 * lowest, 60.0) };
+        let scatter = Axes { area: lower, x, y: Axis::logarithmic(0.5 * lowest, 3.0 * lowest.powf(-0.4)) };
         draw_means(&mut drawing, suite, half, &means, &bands);
         draw_scatter(&mut drawing, suite, &scatter, &bands, half);
     }

@@ -42,6 +42,11 @@ fn draw_pairs(drawing: &mut Drawing, suite: &Suite, area: Area) {
     let fnl = suite.configuration.fnl;
     let axis = holding(all.chain([0.0, fnl]), 0.08);
     let axes = Axes { area, x: axis, y: axis };
+    for truth in [0.0, fnl] {
+        let grey = Pen::dashed(GREY.fade(0.7), 1.0);
+        axes.level(drawing, truth, grey);
+        axes.upright(drawing, truth, grey);
+    }
     // Below the points, so that it hides none.
     let local = format!("Normal, *f*_{{NL}} = {fnl}");
     let fixed_local = format!("Fixed, *f*_{{NL}} = {fnl}");
@@ -53,10 +58,6 @@ fn draw_pairs(drawing: &mut Drawing, suite: &Suite, area: Area) {
     ];
     axes.legend(drawing, &entries, [false, false]);
     for half in [Half::Gaussian, Half::Local] {
-        let truth = suite.configuration.fnl_of(half);
-        let grey = Pen::dashed(GREY.fade(0.7), 1.0);
-        axes.level(drawing, truth, grey);
-        axes.upright(drawing, truth, grey);
         for amplitude in [Amplitude::Normal, Amplitude::Fixed] {
             // f_NL = 0 is hollow.
             let opacity = if half == Half::Gaussian { 0.0 } else { 0.55 };
