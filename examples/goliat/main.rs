@@ -1,0 +1,89 @@
+//! What Fix, Pair and Match do to the scatter of initial conditions with local primordial non-Gaussianity.
+//!
+//! `cargo run --release --example goliat` makes N seeds x 8 variants of the initial conditions of the GOLIAT-PNG suite
+//! (Avila & Adame 2022, arXiv:2204.11103) at z = 32, as in the appendix of the paper, and writes tables and figures.
+//! The data walks one way: arguments -> suite (measure) -> statistics -> report and figures.
+
+mod arguments;
+mod axes;
+mod cosmology;
+mod drawing;
+mod figures;
+mod measure;
+mod report;
+mod statistics;
+mod suite;
+mod text;
+
+use std::io::Write as _;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use arguments::{Arguments, Request};
+use suite::{Suite, Variant};
+
+/// Whatever stops the program; it is shown to a person.
+pub(crate) type Failure = Box<dyn std::error::Error + Send + Sync>;
+
+fn main() -> ExitCode {
+    match arguments::parse(lexopt::Parser::from_env()).and_then(answer) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("goliat: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn answer(request: Request) -> Result<(), Failure> {
+    match request {
+        Request::Help => say(arguments::HELP)?,
+        Request::Run(arguments) => run(&arguments)?,
+    }
+    Ok(())
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let output = arguments.output.as_path();
+    let unwritable = |error| format!("cannot write to {}: {error}", output.display());
+    // Before the work, so that a wrong folder costs nobody a minute.
+    std::fs::create_dir_all(output).map_err(unwritable)?;
+
+    let start = Instant::now();
+    let progress = bar("initial conditions", arguments.seeds * Variant::COUNT)?;
+    let suite = Suite::run(arguments, &|| progress.inc(1))?;
+    progress.finish();
+    let elapsed = start.elapsed();
+
+    for (name, content) in report::tables(&suite) {
+        std::fs::write(output.join(name), content).map_err(unwritable)?;
+    }
+    let pictures = figures::all(&suite)?;
+    let progress = bar("figures", pictures.len())?;
+    for (name, drawing) in &pictures {
+        std::fs::write(output.join(name).with_extension("svg"), drawing.svg()?).map_err(unwritable)?;
+        std::fs::write(output.join(name).with_extension("png"), drawing.png()?).map_err(unwritable)?;
+        progress.inc(1);
+    }
+    progress.finish();
+
+    let names: Vec<_> = pictures.iter().map(|(name, _)| *name).collect();
+    let table = report::text(&suite, arguments.threads, elapsed);
+    let (names, folder) = (names.join(", "), output.display());
+    say(&format!("{table}\nFigures ({names}; PNG and SVG) and tables (CSV) are in {folder}\n"))
+}
+
+/// Unlike `print!`, does not panic where the reader has gone.
+fn say(text: &str) -> Result<(), Failure> {
+    Ok(std::io::stdout().write_all(text.as_bytes())?)
+}
+
+/// A bar on the terminal's error stream; silent where that is not a terminal.
+fn bar(name: &'static str, length: usize) -> Result<ProgressBar, Failure> {
+    let style = ProgressStyle::with_template("{msg:>18} {wide_bar} {pos}/{len} {elapsed} (left: {eta})")?;
+    let progress = ProgressBar::new(length as u64).with_style(style).with_message(name);
+    progress.enable_steady_tick(Duration::from_millis(200));
+    Ok(progress)
+}

@@ -1,0 +1,246 @@
+//! What the suite says in words and numbers: a table for the terminal, and CSV files.
+
+use std::fmt::Write as _;
+use std::time::Duration;
+
+use crate::cosmology::{OMEGA_LAMBDA, OMEGA_MATTER, REDSHIFT, SPECTRAL_INDEX};
+use crate::statistics::{
+    Kind, ROUNDING, band, correlation, deviation, differences, error_of_mean, estimates, mean,
+    power_difference, quadratic_mean, ranges,
+};
+use crate::suite::{Half, Suite, Variant};
+
+/// Sigma and what it is worth, as text: a scatter that is only rounding is exact.
+fn sigma_text(ratio: f64) -> String {
+    match ratio {
+        ratio if ratio < ROUNDING => String::from("exact"),
+        ratio if ratio < 0.01 => format!("{ratio:.1e}"),
+        ratio => format!("{ratio:.3}"),
+    }
+}
+
+fn worth_text(ratio: f64) -> String {
+    match ratio.powi(-2) {
+        worth if worth.is_nan() => String::from("-"),
+        _ if ratio < ROUNDING => String::from("inf"),
+        worth if worth < 9.95 => format!("{worth:.1}"),
+        worth if worth < 9_999.5 => format!("{worth:.0}"),
+        worth => format!("{worth:.0e}"),
+    }
+}
+
+fn rho_text(rho: Option<f64>) -> String {
+    rho.map_or_else(|| String::from("-"), |rho| format!("{rho:.3}"))
+}
+
+/// One line of the table of P(k): a title, sigma in three ranges, and the sigma that counts as one simulation.
+fn power_line(title: &str, sigma: [f64; 3], reference: [f64; 3], rho: &str) -> String {
+    let mut line = format!("  {title:<32}");
+    for sigma in sigma {
+        let _ = write!(line, "{:>9}", sigma_text(sigma));
+    }
+    line.push_str("  ");
+    for (sigma, reference) in sigma.into_iter().zip(reference) {
+        let _ = write!(line, "{:>9}", worth_text(sigma / reference));
+    }
+    let _ = write!(line, "{rho:>9}");
+    format!("{}\n", line.trim_end())
+}
+
+/// The table that a person reads.
+pub(crate) fn text(suite: &Suite, threads: usize, elapsed: Duration) -> String {
+    let configuration = &suite.configuration;
+    let (size, length, fnl) = (configuration.size, configuration.length, configuration.fnl);
+    let mut text = format!(
+        "\nGOLIAT initial conditions: {seeds} seeds x {variants} variants of {size}^3 cells in ({length} Mpc/h)^3 \
+         at z = {REDSHIFT}\n\
+         Omega_m = {OMEGA_MATTER}, Omega_Lambda = {OMEGA_LAMBDA}, n_s = {SPECTRAL_INDEX}, sigma_8 = 0.8; \
+         f_NL = 0 and {fnl}; {time:.1} s on {threads} threads\n\n",
+        seeds = suite.seeds.len(),
+        variants = Variant::COUNT,
+        time = elapsed.as_secs_f64(),
+    );
+    power_table(&mut text, suite);
+    squeezed_table(&mut text, suite);
+    text
+}
+
+fn power_table(text: &mut String, suite: &Suite) {
+    let fnl = suite.configuration.fnl;
+    let bins = suite.bins();
+    let ranges = ranges(&bins.k);
+    let in_ranges = |ratio: &[f64]| ranges.clone().map(|range| quadratic_mean(&ratio[range]));
+    text.push_str(
+        "Power spectrum: scatter from seed to seed, per simulation, in units of sigma_th = sqrt(2/N_k) P,\n\
+         and the number of Normal simulations that one simulation is worth\n",
+    );
+    let _ = writeln!(text, "  {:<32}{:>27}  {:>27}", "", "sigma / sigma_th  ", "worth  ");
+    let mut header = format!("  {:<32}", "k [h/Mpc] up to");
+    for block in ["", "  "] {
+        header.push_str(block);
+        for range in &ranges {
+            let edge = bins.k.get(range.end.max(1) - 1).copied().unwrap_or(0.0);
+            let _ = write!(header, "{edge:>9.3}");
+        }
+    }
+    let _ = writeln!(text, "{header}{:>9}", "rho");
+    for half in [Half::Gaussian, Half::Local] {
+        let reference = in_ranges(&band(suite, Kind::Normal, half).ratio);
+        for kind in Kind::ALL {
+            let title = format!("f_NL = {:<6} {}", suite.configuration.fnl_of(half), kind.name());
+            text.push_str(&power_line(&title, in_ranges(&band(suite, kind, half).ratio), reference, ""));
+        }
+    }
+    let _ = writeln!(text, "  P(f_NL = {fnl}) - P(f_NL = 0), where one \"simulation\" is one of each f_NL:");
+    let unmatched = in_ranges(&power_difference(suite, Kind::Normal, false).ratio);
+    text.push_str(&power_line("Normal, different seeds", unmatched, unmatched, ""));
+    for kind in Kind::ALL {
+        let difference = power_difference(suite, kind, true);
+        let rho: Option<Vec<f64>> = difference.correlation.into_iter().collect();
+        let rho = rho_text(rho.map(|rho| mean(&rho)));
+        let title = format!("{}, Matched", kind.name());
+        text.push_str(&power_line(&title, in_ranges(&difference.ratio), unmatched, &rho));
+    }
+}
+
+/// A row of the table of the squeezed signal: mean with its error, and scatter per simulation.
+struct Squeezed {
+    title: String,
+    mean: f64,
+    error: f64,
+    sigma: f64,
+    /// sigma over that of the reference.
+    relative: f64,
+    rho: Option<f64>,
+}
+
+fn squeezed_rows(suite: &Suite) -> Vec<Squeezed> {
+    let read = |kind, half| estimates(suite, kind, half, |bins| bins.squeezed);
+    let row = |title, kind: Kind, values: &[f64], reference: f64, rho| Squeezed {
+        title,
+        mean: mean(values),
+        error: error_of_mean(values),
+        sigma: kind.sigma(values),
+        relative: kind.sigma(values) / reference,
+        rho,
+    };
+    let mut rows = Vec::new();
+    for half in [Half::Gaussian, Half::Local] {
+        let reference = deviation(&read(Kind::Normal, half));
+        for kind in Kind::ALL {
+            let title = format!("f_NL = {:<6} {}", suite.configuration.fnl_of(half), kind.name());
+            rows.push(row(title, kind, &read(kind, half), reference, None));
+        }
+    }
+    let halves = |kind| (read(kind, Half::Local), read(kind, Half::Gaussian));
+    let (local, gaussian) = halves(Kind::Normal);
+    let unmatched = differences(&local, &gaussian, false);
+    let reference = deviation(&unmatched);
+    rows.push(row(String::from("difference, different seeds"), Kind::Normal, &unmatched, reference, None));
+    for kind in Kind::ALL {
+        let (local, gaussian) = halves(kind);
+        let title = format!("difference, {}, Matched", kind.name());
+        let rho = correlation(&local, &gaussian);
+        rows.push(row(title, kind, &differences(&local, &gaussian, true), reference, rho));
+    }
+    rows
+}
+
+fn squeezed_table(text: &mut String, suite: &Suite) {
+    text.push_str(
+        "\nSqueezed signal: f_NL measured in each field; mean with its error, scatter per simulation\n",
+    );
+    let _ =
+        writeln!(text, "  {:<39}{:>9} {:>11}{:>12}{:>9}{:>9}", "", "mean", "error", "sigma", "worth", "rho");
+    for row in squeezed_rows(suite) {
+        let _ = writeln!(
+            text,
+            "  {:<39}{:>9.2} +/-{:>8.2}{:>12.3}{:>9}{}",
+            row.title,
+            row.mean,
+            row.error,
+            row.sigma,
+            worth_text(row.relative),
+            row.rho.map_or_else(String::new, |rho| format!("{rho:>9.3}")),
+        );
+    }
+}
+
+/// Name and content of each CSV file.
+pub(crate) fn tables(suite: &Suite) -> [(&'static str, String); 3] {
+    [
+        ("power.csv", power_csv(suite)),
+        ("squeezed.csv", squeezed_csv(suite)),
+        ("summary.csv", summary_csv(suite)),
+    ]
+}
+
+/// Every seed and variant, in the order in which they were made.
+fn each(suite: &Suite) -> impl Iterator<Item = (usize, Variant, String)> {
+    (0..suite.seeds.len()).flat_map(move |place| {
+        Variant::all().into_iter().map(move |variant| {
+            let [amplitude, phase] = variant.names();
+            let fnl = suite.configuration.fnl_of(variant.half);
+            (place, variant, format!("{},{amplitude},{phase},{fnl}", suite.seeds[place]))
+        })
+    })
+}
+
+fn power_csv(suite: &Suite) -> String {
+    let mut csv =
+        String::from("seed,amplitude,phase,f_NL,k [h/Mpc],modes,linear P [(Mpc/h)^3],P [(Mpc/h)^3]\n");
+    for (place, variant, names) in each(suite) {
+        let bins = suite.get(place, variant);
+        for (((k, modes), theory), power) in bins.k.iter().zip(&bins.modes).zip(&bins.theory).zip(&bins.power)
+        {
+            let _ = writeln!(csv, "{names},{k},{modes},{theory},{power}");
+        }
+    }
+    csv
+}
+
+fn squeezed_csv(suite: &Suite) -> String {
+    let mut csv = String::from("seed,amplitude,phase,f_NL,f_NL measured\n");
+    for (place, variant, names) in each(suite) {
+        let _ = writeln!(csv, "{names},{}", suite.get(place, variant).squeezed);
+    }
+    csv
+}
+
+/// Mean and scatter of each type, bin by bin, with sigma/sigma_th of matched differences.
+fn summary_csv(suite: &Suite) -> String {
+    let bins = suite.bins();
+    let mut csv = String::from("quantity,type,f_NL,k [h/Mpc],modes,mean,standard deviation,sigma/sigma_th\n");
+    for half in [Half::Gaussian, Half::Local] {
+        let fnl = suite.configuration.fnl_of(half);
+        for kind in Kind::ALL {
+            let band = band(suite, kind, half);
+            for (i, (k, modes)) in bins.k.iter().zip(&bins.modes).enumerate() {
+                let (mean, deviation, ratio) = (band.mean[i], band.deviation[i], band.ratio[i]);
+                let _ = writeln!(csv, "P,{},{fnl},{k},{modes},{mean},{deviation},{ratio}", kind.name());
+            }
+        }
+    }
+    for kind in Kind::ALL {
+        for (name, matched) in [("matched difference of P", true), ("unmatched difference of P", false)] {
+            let ratio = power_difference(suite, kind, matched).ratio;
+            for ((k, modes), ratio) in bins.k.iter().zip(&bins.modes).zip(ratio) {
+                let _ =
+                    writeln!(csv, "{name},{},{},{k},{modes},,,{ratio}", kind.name(), suite.configuration.fnl);
+            }
+        }
+    }
+    csv
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scatter_of_rounding_is_exact_and_a_half_is_worth_four() {
+        assert_eq!([sigma_text(1e-12), worth_text(1e-12)], ["exact", "inf"]);
+        assert_eq!([sigma_text(0.5), worth_text(0.5)], ["0.500", "4.0"]);
+        assert_eq!([sigma_text(0.001), worth_text(0.001)], ["1.0e-3", "1e6"]);
+    }
+}
