@@ -33,7 +33,7 @@ fn generate() -> String {
         sys_includes: vec!["stddef.h".into(), "stdint.h".into()],
         usize_is_size_t: true,
         style: cbindgen::Style::Both,
-        documentation_style: cbindgen::DocumentationStyle::C,
+        documentation_style: cbindgen::DocumentationStyle::Doxy,
         header: Some(PREAMBLE.trim_end().into()),
         line_length: 110,
         ..cbindgen::Config::default()
@@ -43,6 +43,7 @@ fn generate() -> String {
         config.export.rename.insert(rust.into(), c.into());
     }
     config.defines.insert("feature = std".into(), "FIXPAIR_THREADS".into());
+    config.export.exclude.extend(["EARLIEST_GROWTH".into(), "STEP".into(), "ALIGN".into()]);
     let mut builder = cbindgen::Builder::new().with_config(config);
     for file in STRUCTS {
         builder = builder.with_src(root().join(file));
@@ -75,26 +76,36 @@ fn polish(header: &str) -> String {
     let mut comment = 0; // where the last comment began
     let mut skipping = false;
     for line in header.lines() {
-        if line.starts_with("/**") {
+        let text = line.trim();
+        if text.starts_with("/*") {
             comment = lines.len();
         }
-        if line.trim_start().starts_with("* # Safety") {
+        if text == "* # Safety" {
             skipping = true;
             while lines.last().is_some_and(|last| last.trim() == "*") {
                 lines.pop();
             }
         }
-        skipping &= !line.trim_start().starts_with("*/");
-        if skipping || line.contains("```") {
+        skipping &= text != "*/";
+        if skipping || text.starts_with("* ```") {
             continue;
         }
-        if let Some((_, title)) =
-            firsts.iter().find(|(name, _)| line.contains(name.as_str()) && !line.starts_with(" *"))
-        {
+        let named = |(name, _): &&(String, &str)| line.contains(name.as_str()) && !text.starts_with('*');
+        if let Some((_, title)) = firsts.iter().find(named) {
             let rule = "=".repeat(title.len());
             lines.insert(comment, format!("/*\n * {title}\n * {rule}\n */\n"));
         }
-        lines.push(line.trim_end().to_owned());
+        let line =
+            line.replace("/**", "/*").replace("defined(FIXPAIR_THREADS)", "!defined(FIXPAIR_NO_THREADS)");
+        let negative = line.strip_prefix("#define ").and_then(|rest| rest.split_once(" -"));
+        lines.push(negative.map_or(line.clone(), |(name, digits)| format!("#define {name} (-{digits})")));
+        if text == "*/" && lines.len() == comment + 3 {
+            // A comment of one line.
+            let one = lines[comment + 1].trim_start_matches(' ').trim_start_matches("* ").to_owned();
+            let indent = lines[comment].len() - 2;
+            lines.truncate(comment);
+            lines.push(format!("{}/* {one} */", " ".repeat(indent)));
+        }
     }
     lines.join("\n") + "\n"
 }

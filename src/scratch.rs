@@ -20,6 +20,7 @@ pub struct Layout {
 
 impl Layout {
     /// No memory.
+    /// cbindgen:ignore
     pub const EMPTY: Self = Self { size: 0, align: ALIGN };
 
     /// Adds an array of `count` values of `T`, rounded up to whole cache lines.
