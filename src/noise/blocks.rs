@@ -7,8 +7,8 @@ use super::realisation::{Amplitude, Phase, Realisation};
 use crate::math::{neg_ln, sin_cos_turns, sqrt, sqrt_in_place};
 use crate::real::Real;
 
-/// Modes in a block: enough to keep several vector iterations of each stage in flight, few enough that the stages
-/// hand over in the first-level cache.
+/// Modes in a block: a few vector iterations of each stage, handed over in the first-level cache; more would be
+/// wasted at the end of short rows.
 const LANES: usize = 16;
 
 /// The fourth counter word: this use of the generator ("whit"). Other uses of one seed take other tags.
