@@ -6,7 +6,7 @@
 use crate::status::{Error, Result};
 
 /// The earliest scale factor at which the background is asked for.
-pub const EARLIEST: f64 = 1e-8;
+pub const EARLIEST: f64 = 1e-10;
 
 /// The latest scale factor at which the background is asked for.
 pub const LATEST: f64 = 10.0;
@@ -78,7 +78,7 @@ impl Cosmology {
     ///
     /// # Errors
     /// `NotFinite` if a number is NaN or infinite. `Range` unless 0 < Om <= 100, 0 <= Or <= 1, |Ode| <= 100, 0 <= Ob <= Om,
-    /// 0.01 <= h <= 100, |n_s| <= 10, |w0| and |wa| <= 10, 0 < t_cmb <= 100; or if E^2 is not positive everywhere in 1e-8 <= a <= 1; or
+    /// 0.01 <= h <= 100, |n_s| <= 10, |w0| and |wa| <= 10, 0 < t_cmb <= 100; or if E^2 is not positive everywhere in 1e-10 <= a <= 1; or
     /// if dark energy and curvature are more than 1% of E^2 at a = 1e-6. (w0 + wa < -0.34 and Om of order 1 are safe.)
     /// Cost: 10 microseconds.
     pub fn check(&self) -> Result<()> {
@@ -137,7 +137,7 @@ impl Cosmology {
     /// E(a) = H(a)/H0.
     ///
     /// # Errors
-    /// As [`Cosmology::check`]; `NotFinite` if a is; `Range` if a is not in 1e-8 ..= 10 or the universe does not expand from 1 to a.
+    /// As [`Cosmology::check`]; `NotFinite` if a is; `Range` if a is not in 1e-10 ..= 10 or the universe does not expand from 1 to a.
     pub fn expansion(&self, a: f64) -> Result<f64> {
         self.check_at(a)?;
         Ok(libm::sqrt(self.e_squared(a)))

@@ -9,7 +9,7 @@
 //! -(3/7) D^2 Om(a)^(-1/143), which is a check here and not a source. D2 is not normalised to 1: it belongs to this D.
 //!
 //! The equations are solved for u = D/a and v = D2/a^2, which are constant while matter dominates, in equal steps of ln a
-//! by the classical fourth-order Runge-Kutta rule. Start: without radiation, deep in matter domination at a = 1e-8. With it,
+//! by the classical fourth-order Runge-Kutta rule. Start: without radiation, deep in matter domination at a = 1e-10. With it,
 //! deep in radiation domination, y = a/a_eq <= 0.01, on the growing mode D = 1 + (3/2) y (Meszaros 1974) and the D2 that is
 //! regular and zero at y = 0: -(3/2) y - (9/8) y^2 + y^3/16 - ..., that is, no second-order displacement before matter begins to fall.
 
@@ -19,8 +19,8 @@ use crate::status::{Error, Result};
 /// The earliest scale factor that growth is given for; what is left of the decaying modes of the start is below 1e-9 there.
 pub const EARLIEST_GROWTH: f64 = 1e-5;
 
-/// Step in ln a. The relative error of D, f, D2 and f2 that it leaves is below 1e-9.
-const STEP: f64 = 1.0 / 64.0;
+/// Step in ln a. The relative errors that it leaves today are 1e-10 in D and f, 1e-9 in D2 and f2.
+const STEP: f64 = 1.0 / 128.0;
 
 /// Growth functions at one scale factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
