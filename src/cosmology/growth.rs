@@ -2,8 +2,10 @@
 //!
 //! With ' = d/dlna and matter alone clustering:
 //!
-//!     D''  + (2 + dlnE/dlna) D'  = (3/2) Om(a) D,           D(1) = 1
-//!     D2'' + (2 + dlnE/dlna) D2' = (3/2) Om(a) (D2 - D^2),  x = q - D grad phi1 + D2 grad phi2
+//! ```text
+//! D''  + (2 + dlnE/dlna) D'  = (3/2) Om(a) D,           D(1) = 1
+//! D2'' + (2 + dlnE/dlna) D2' = (3/2) Om(a) (D2 - D^2),  x = q - D grad phi1 + D2 grad phi2
+//! ```
 //!
 //! (Bouchet et al. 1995, astro-ph/9406013). In an Einstein-de Sitter universe D = a, D2 = -(3/7) a^2; otherwise D2 is near
 //! -(3/7) D^2 Om(a)^(-1/143), which is a check here and not a source. D2 is not normalised to 1: it belongs to this D.
@@ -41,7 +43,7 @@ pub struct Growth {
 /// # Errors
 /// As [`Cosmology::check`]; `NotFinite` if a is; `Range` unless 1e-5 <= a <= 10 and the universe expands until a.
 ///
-/// Cost: 0.1 ms.
+/// Cost: 0.4 ms.
 pub fn growth(cosmology: &Cosmology, a: f64) -> Result<Growth> {
     let mut out = [Growth::default()];
     growth_many(cosmology, &[a], &mut out)?;
@@ -53,7 +55,7 @@ pub fn growth(cosmology: &Cosmology, a: f64) -> Result<Growth> {
 /// # Errors
 /// As [`growth`]; `Length` if `out` is not as long as `a`. `out` is then untouched.
 ///
-/// Cost: 0.1 ms and 0.1 microseconds a scale factor, and 1 ns a step and scale factor.
+/// Cost: 0.4 ms, and 2 microseconds a scale factor.
 pub fn growth_many(cosmology: &Cosmology, a: &[f64], out: &mut [Growth]) -> Result<()> {
     cosmology.check()?;
     if a.len() != out.len() {
@@ -65,13 +67,17 @@ pub fn growth_many(cosmology: &Cosmology, a: &[f64], out: &mut [Growth]) -> Resu
     if a.iter().any(|a| !(EARLIEST_GROWTH..=LATEST).contains(a)) {
         return Err(Error::Range);
     }
-    let last = a.iter().fold(1.0, |last, &a| f64::max(last, a));
+    let (first, last) =
+        a.iter().fold((1.0, 1.0), |(first, last), &a| (f64::min(first, a), f64::max(last, a)));
     cosmology.check_expands(1.0, last)?;
 
     let mut today = State::default();
     integrate(cosmology, last, |from, to, step| {
         if from < 1.0 && 1.0 <= to {
             today = step(1.0);
+        }
+        if to < first {
+            return;
         }
         for (&a, out) in a.iter().zip(out.iter_mut()) {
             if from < a && a <= to {
@@ -95,7 +101,7 @@ pub fn growth_many(cosmology: &Cosmology, a: &[f64], out: &mut [Growth]) -> Resu
 /// # Errors
 /// As [`Cosmology::check`].
 ///
-/// Cost: 0.1 ms.
+/// Cost: 0.4 ms.
 pub fn g_ratio(cosmology: &Cosmology) -> Result<f64> {
     let cosmology = cosmology.without_radiation();
     cosmology.check()?;

@@ -262,3 +262,41 @@ fn bad_requests_are_refused_and_leave_no_trace() {
     assert_eq!(growth(&closed, 2.5), Err(Error::Range));
     assert_eq!(growth(&Cosmology { h: f64::NAN, ..good }, 1.0), Err(Error::NotFinite));
 }
+
+#[test]
+fn whatever_universe_is_accepted_has_finite_growth() {
+    let mut state = 1_u64;
+    // Knuth's linear congruential generator: any spread of parameters will do.
+    let mut uniform = |from: f64, to: f64| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        from + (to - from) * (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut accepted = 0;
+    for _ in 0..1000 {
+        let cosmology = Cosmology {
+            omega_m: 10_f64.powf(uniform(-6.0, 2.0)),
+            omega_de: uniform(-3.0, 3.0),
+            omega_r: 10_f64.powf(uniform(-18.0, 0.0)),
+            omega_b: 0.0,
+            w0: uniform(-5.0, 1.0),
+            wa: uniform(-5.0, 2.0),
+            ..Cosmology::goliat()
+        };
+        if cosmology.check().is_err() {
+            continue;
+        }
+        accepted += 1;
+        let a = [1e-5, 1e-3, 0.1, 1.0];
+        let mut out = [Growth::default(); 4];
+        growth_many(&cosmology, &a, &mut out).unwrap();
+        for growth in out {
+            assert!(
+                [growth.d, growth.f, growth.d2, growth.f2].iter().all(|x| x.is_finite()),
+                "{cosmology:?}"
+            );
+            assert!(growth.d > 0.0 && growth.d2 < 0.0, "{growth:?} {cosmology:?}");
+        }
+        assert!(g_ratio(&cosmology).map_or(true, |ratio| ratio.is_finite() && ratio > 0.0));
+    }
+    assert!(accepted > 100, "{accepted}");
+}
