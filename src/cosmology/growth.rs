@@ -95,8 +95,8 @@ pub fn growth_many(cosmology: &Cosmology, a: &[f64], out: &mut [Growth]) -> Resu
 
 /// g(z_rad)/g(0), g = (1 + z) D: how much the potential of matter domination exceeds today's (1.316 for Om = 0.27, Ode = 0.73).
 ///
-/// Radiation, if any, is counted as dark energy here ([`Cosmology::without_radiation`]): z_rad is when matter dominates and g
-/// is constant, which with radiation never quite happens. Through decay of the potential during the radiation era T(k) accounts for it.
+/// Radiation, if any, is counted as dark energy here ([`Cosmology::without_radiation`]), for z_rad is a time when matter dominates
+/// and g is constant, which with radiation never quite comes. What the radiation era did to the potential is in T(k).
 ///
 /// # Errors
 /// As [`Cosmology::check`].
