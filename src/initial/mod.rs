@@ -13,3 +13,5 @@ pub mod realise;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_whole;

@@ -133,7 +133,7 @@ fn combine_modes<T: Real, F: Factor, const ADD: bool>(
 #[inline(always)]
 fn multiply_row<T: Real, F: Factor, const ADD: bool>(to: &mut [T], from: &[T], n: [f64; 3], factor: &F) {
     for (m, (t, f)) in to.chunks_exact_mut(2).zip(from.chunks_exact(2)).enumerate() {
-        let c = factor.at([n[0], n[1], n[2] + f64::from(m as u32)]);
+        let c = factor.at([n[0], n[1], n[2] + f64::from(m as i32)]);
         let (mut re, mut im) = (c * f[0].to_f64(), c * f[1].to_f64());
         if F::IMAGINARY {
             (re, im) = (-im, re);

@@ -10,6 +10,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
+use crate::simd::Simd;
 use crate::status::{Error, Result};
 use crate::walk::{Run, walk};
 
@@ -116,17 +117,22 @@ pub fn displace<T: Real>(
     position.check_length(particles)?;
     velocity.check_length(particles)?;
     let lost = AtomicBool::new(false);
+    let simd = Simd::detect();
     let (position, velocity) = (&*position, &*velocity);
     let write = |run: Run, psi1: &[T], psi2: Option<&[T]>| {
         let first = number(brick, run.index);
         let moved = Moved { run, n: brick.n(), axis, step, psi1, psi2 };
-        let sound = moved.each(|i, place, speed| {
+        let put = |i: usize, place: T, speed: T| {
             // SAFETY: a run's particles are numbered consecutively and inside the checked length, and runs hold different particles.
             unsafe {
                 position.write(axis, first + i, place);
                 velocity.write(axis, first + i, speed);
             }
-        });
+        };
+        let sound = simd.vectorise(
+            #[inline(always)]
+            || moved.each(put),
+        );
         if !sound {
             lost.store(true, Ordering::Relaxed);
         }
@@ -148,6 +154,9 @@ fn number(brick: &Brick, index: [usize; 3]) -> usize {
     ((index[0] - start[0]) * count[1] + index[1] - start[1]) * count[2] + index[2] - start[2]
 }
 
+/// Particles moved at a time: enough for full vectors, few enough to stay in the first cache.
+const BLOCK: usize = 64;
+
 /// One run of particles on one axis.
 struct Moved<'a, T> {
     run: Run,
@@ -159,36 +168,83 @@ struct Moved<'a, T> {
 }
 
 impl<T: Real> Moved<'_, T> {
-    /// Hands the position and velocity of each particle to `put`; returns whether all of them are finite.
+    /// Hands position and velocity of each particle to `put`; returns whether all of them are finite.
     #[inline(always)]
     fn each(&self, mut put: impl FnMut(usize, T, T)) -> bool {
-        let Self { run, axis, step, .. } = *self;
-        let cell = step.box_size / self.n as f64;
-        let along = if axis == 2 { 1.0 } else { 0.0 };
-        let q = run.index[axis] as f64;
-        let edge = T::from_f64(step.box_size);
         let mut sound = true;
-        for i in 0..run.length {
-            let one = self.psi1[i].to_f64();
-            let two = self.psi2.map_or(0.0, |psi2| psi2[i].to_f64());
-            let place = T::from_f64(wrap((q + along * i as f64) * cell + (one + two), step.box_size));
-            // Rounding to the mesh's type may reach the far edge, which is the near edge of the next box.
-            let place = if place >= edge { T::ZERO } else { place };
-            let speed = T::from_f64(step.first_velocity * one + step.second_velocity * two);
-            sound &= place >= T::ZERO && speed.is_finite();
-            put(i, place, speed);
+        let (mut place, mut speed) = ([T::ZERO; BLOCK], [T::ZERO; BLOCK]);
+        for (block, psi1) in self.psi1.chunks(BLOCK).enumerate() {
+            let first = block * BLOCK;
+            sound &= match self.psi2 {
+                Some(psi2) => {
+                    let psi2 = &psi2[first..first + psi1.len()];
+                    self.block(
+                        first,
+                        &mut place,
+                        &mut speed,
+                        |i| (psi1[i].to_f64(), psi2[i].to_f64()),
+                        psi1.len(),
+                    )
+                }
+                None => self.block(first, &mut place, &mut speed, |i| (psi1[i].to_f64(), 0.0), psi1.len()),
+            };
+            for (i, (&place, &speed)) in place[..psi1.len()].iter().zip(&speed).enumerate() {
+                put(first + i, place, speed);
+            }
         }
         sound
     }
+
+    #[inline(always)]
+    fn block(
+        &self,
+        first: usize,
+        place: &mut [T; BLOCK],
+        speed: &mut [T; BLOCK],
+        psi: impl Fn(usize) -> (f64, f64),
+        count: usize,
+    ) -> bool {
+        let box_size = self.step.box_size;
+        let cell = box_size / self.n as f64;
+        let along = if self.axis == 2 { 1.0 } else { 0.0 };
+        let q = self.run.index[self.axis] as f64 + along * first as f64;
+        let edge = T::from_f64(box_size);
+        let (mut near, mut finite) = (true, true);
+        for i in 0..count {
+            let (one, two) = psi(i);
+            let x = (q + along * f64::from(i as i32)) * cell + (one + two);
+            let wrapped = wrap_once(x, box_size);
+            let v = T::from_f64(self.step.first_velocity * one + self.step.second_velocity * two);
+            near &= wrapped >= 0.0 && wrapped < box_size;
+            finite &= v.is_finite();
+            // Rounding to the mesh's type may reach the far edge, which is the near edge of the next box.
+            let x = T::from_f64(wrapped);
+            place[i] = if x >= edge { T::ZERO } else { x };
+            speed[i] = v;
+        }
+        if near {
+            return finite;
+        }
+        for i in 0..count {
+            let (one, two) = psi(i);
+            let x = T::from_f64(wrap((q + along * f64::from(i as i32)) * cell + (one + two), box_size));
+            place[i] = if x >= edge { T::ZERO } else { x };
+            finite &= place[i] >= T::ZERO;
+        }
+        finite
+    }
+}
+
+/// x modulo L where x lies in the box or the ones beside it.
+#[inline(always)]
+fn wrap_once(x: f64, box_size: f64) -> f64 {
+    let x = if x < 0.0 { x + box_size } else { x };
+    if x >= box_size { x - box_size } else { x }
 }
 
 /// x modulo L; NaN where x is not finite.
-#[inline(always)]
 fn wrap(x: f64, box_size: f64) -> f64 {
-    if x >= 0.0 && x < box_size {
-        return x;
-    }
-    let once = if x < 0.0 { x + box_size } else { x - box_size };
+    let once = wrap_once(x, box_size);
     if once >= 0.0 && once < box_size {
         return once;
     }
