@@ -32,7 +32,8 @@ fn bench<T: Real + fftw::Number>(criterion: &mut Criterion, name: &str) {
         }
         let cells = (n * n * n) as f64;
         group.throughput(Throughput::Elements((2.5 * cells * cells.log2()) as u64));
-        let values = |count: usize| (0..count).map(|i| T::from_f64((i % 1013) as f64 - 506.0)).collect::<Vec<T>>();
+        let values =
+            |count: usize| (0..count).map(|i| T::from_f64((i % 1013) as f64 - 506.0)).collect::<Vec<T>>();
         if let Some(mut fftw) = fftw::Fftw::<T>::new(n, true, T::ZERO) {
             let scale = T::from_f64(1.0 / cells);
             fftw.data = values(fftw.data.len());

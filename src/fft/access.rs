@@ -49,7 +49,11 @@ impl<V: Lanes> Access<V> for Columns<V::Element> {
     #[inline(always)]
     unsafe fn get(self, index: usize) -> Complex<V> {
         // SAFETY: the columns are inside the mesh, says the caller.
-        let (re, im) = unsafe { V::load_columns(self.first.add(index * self.stride)) };
+        let from = unsafe { self.first.add(index * self.stride) };
+        // The columns to the right come next, and hardware does not guess strides of a page or more.
+        V::prefetch(from.wrapping_add(2 * V::COUNT));
+        // SAFETY: as above.
+        let (re, im) = unsafe { V::load_columns(from) };
         Complex { re, im }
     }
 

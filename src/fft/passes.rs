@@ -116,12 +116,7 @@ unsafe fn pass<V: Lanes, I: Access<V>, O: Access<V>>(
 /// # Safety
 /// `from` and `to` hold `blocks radix` elements, apart unless `blocks` is 1; `reversal` is a table of `blocks` numbers
 /// below `blocks`; the processor has the lanes.
-unsafe fn last_pass<V: Lanes, I: Access<V>, O: Access<V>>(
-    radix: u8,
-    from: I,
-    to: O,
-    reversal: &[u32],
-) {
+unsafe fn last_pass<V: Lanes, I: Access<V>, O: Access<V>>(radix: u8, from: I, to: O, reversal: &[u32]) {
     let blocks = reversal.len();
     let reversal = reversal.as_ptr();
     macro_rules! enter {

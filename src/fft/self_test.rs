@@ -53,7 +53,9 @@ pub fn self_test<T: Real>(fft: &mut dyn Fft3<T>, data: &mut [T]) -> Result<()> {
     });
     fft.forward(data)?;
     let good = waves.visit_modes(&modes, |address, f| {
-        (0..2).all(|part| (data[address + part].to_f64() - f[part]).abs() <= waves.tolerance(T::EPSILON.to_f64()))
+        (0..2).all(|part| {
+            (data[address + part].to_f64() - f[part]).abs() <= waves.tolerance(T::EPSILON.to_f64())
+        })
     });
     if !good {
         return Err(Error::Hook);

@@ -139,9 +139,7 @@ impl<'a, T: Real> Plan<'a, T> {
 
     fn layout(layout: Layout, length: usize) -> Result<Layout> {
         let radices = Radices::of(length)?;
-        layout
-            .and::<u8>(2 * radices.roots(length) * size_of::<T>())?
-            .and::<u32>(length / radices.last())
+        layout.and::<u8>(2 * radices.roots(length) * size_of::<T>())?.and::<u32>(length / radices.last())
     }
 
     fn build(arena: &mut Arena, length: usize) -> Result<()> {
@@ -266,6 +264,9 @@ impl<'a, T: Real> Tables<'a, T> {
     /// `Version` if `memory` does not hold tables of this number type; `Scratch` or `Alignment` as [`Tables::new`].
     pub fn view(memory: &'a [u8]) -> Result<Self> {
         let mut rest = memory;
+        if memory.len() < ALIGN {
+            return Err(Error::Scratch);
+        }
         if !memory.as_ptr().addr().is_multiple_of(ALIGN) {
             return Err(Error::Alignment);
         }
@@ -332,7 +333,10 @@ mod tests {
                 }
             }
             if n % 4 == 0 {
-                assert_eq!([root(0, n), root(n / 4, n)].map(|(a, b)| (a, b + 0.0)), [(1.0, 0.0), (0.0, -1.0)]);
+                assert_eq!(
+                    [root(0, n), root(n / 4, n)].map(|(a, b)| (a, b + 0.0)),
+                    [(1.0, 0.0), (0.0, -1.0)]
+                );
             }
         }
     }

@@ -192,20 +192,29 @@ impl<'a, T: Real> Sweep<'a, T> {
                 (chunk * each..items.min((chunk + 1) * each)).for_each(|item| body(item, work.cast()));
             })
         };
-        // SAFETY: groups and blocks are disjoint parts of the mesh; each chunk runs once.
+        let planes = |group: usize, work: *mut T| {
+            // SAFETY: groups are disjoint planes; each chunk runs once, with a line of its own.
+            unsafe {
+                match direction {
+                    Direction::Forward => self.planes_forward::<V>(group, work),
+                    Direction::Inverse => self.planes_inverse::<V>(group, work),
+                }
+            }
+        };
+        let columns = |block: usize, work: *mut T| {
+            // SAFETY: blocks are disjoint columns; each chunk runs once, with a line of its own.
+            unsafe { self.x_columns::<V>(direction, block, work) }
+        };
         match direction {
-            Direction::Forward => {
-                share(groups, &|group, work| unsafe { self.planes_forward::<V>(group, work) })?;
-                share(blocks, &|block, work| unsafe { self.x_columns::<V>(direction, block, work) })
-            }
-            Direction::Inverse => {
-                share(blocks, &|block, work| unsafe { self.x_columns::<V>(direction, block, work) })?;
-                share(groups, &|group, work| unsafe { self.planes_inverse::<V>(group, work) })
-            }
+            Direction::Forward => share(groups, &planes).and_then(|()| share(blocks, &columns)),
+            Direction::Inverse => share(blocks, &columns).and_then(|()| share(groups, &planes)),
         }
     }
 
     /// Rows and columns of as many planes as there are lanes.
+    ///
+    /// # Safety
+    /// As [`Sweep::run`]; the planes of `group` are inside the mesh and nobody else's, and `work` is a line.
     unsafe fn planes_forward<V: Lanes<Element = T>>(&self, group: usize, work: *mut T) {
         let n = self.tables.n();
         let planes = group * V::COUNT..n.min((group + 1) * V::COUNT);
@@ -215,7 +224,11 @@ impl<'a, T: Real> Sweep<'a, T> {
                 let plane = self.data.add(x * self.plane);
                 for y in (0..n).step_by(V::COUNT) {
                     let first = plane.add(y * (n + 2));
-                    rows::forward::<V>(self.tables, Rows { first, stride: n + 2, count: V::COUNT.min(n - y) }, work);
+                    rows::forward::<V>(
+                        self.tables,
+                        Rows { first, stride: n + 2, count: V::COUNT.min(n - y) },
+                        work,
+                    );
                 }
                 self.y_columns::<V>(Direction::Forward, plane, work);
             }
@@ -225,6 +238,9 @@ impl<'a, T: Real> Sweep<'a, T> {
     }
 
     /// Undoes `planes_forward`.
+    ///
+    /// # Safety
+    /// As `planes_forward`.
     unsafe fn planes_inverse<V: Lanes<Element = T>>(&self, group: usize, work: *mut T) {
         let n = self.tables.n();
         let planes = group * V::COUNT..n.min((group + 1) * V::COUNT);
@@ -237,13 +253,20 @@ impl<'a, T: Real> Sweep<'a, T> {
                 self.y_columns::<V>(Direction::Inverse, plane, work);
                 for y in (0..n).step_by(V::COUNT) {
                     let first = plane.add(y * (n + 2));
-                    rows::inverse::<V>(self.tables, Rows { first, stride: n + 2, count: V::COUNT.min(n - y) }, work);
+                    rows::inverse::<V>(
+                        self.tables,
+                        Rows { first, stride: n + 2, count: V::COUNT.min(n - y) },
+                        work,
+                    );
                 }
             }
         }
     }
 
     /// Columns along y of one plane, as many at a time as there are lanes.
+    ///
+    /// # Safety
+    /// As `planes_forward`.
     unsafe fn y_columns<V: Lanes<Element = T>>(&self, direction: Direction, plane: *mut T, work: *mut T) {
         let n = self.tables.n();
         let columns = n / 2 + 1;
@@ -257,6 +280,9 @@ impl<'a, T: Real> Sweep<'a, T> {
     }
 
     /// The columns along y that fill no vector: the same one of several planes side by side.
+    ///
+    /// # Safety
+    /// As `planes_forward`.
     unsafe fn y_leftovers<V: Lanes<Element = T>>(
         &self,
         direction: Direction,
@@ -276,6 +302,9 @@ impl<'a, T: Real> Sweep<'a, T> {
     }
 
     /// A block of columns along x. They are neighbours across the ends of rows.
+    ///
+    /// # Safety
+    /// As [`Sweep::run`]; the columns of `block` begin inside the mesh and are nobody else's, and `work` is a line.
     unsafe fn x_columns<V: Lanes<Element = T>>(&self, direction: Direction, block: usize, work: *mut T) {
         let n = self.tables.n();
         let first = block * V::COUNT;
@@ -286,7 +315,11 @@ impl<'a, T: Real> Sweep<'a, T> {
             if lanes == V::COUNT {
                 self.column::<V, _>(direction, Columns { first, stride: self.plane }, work);
             } else {
-                self.column::<V, _>(direction, Scattered { first, stride: self.plane, lanes, apart: 2 }, work);
+                self.column::<V, _>(
+                    direction,
+                    Scattered { first, stride: self.plane, lanes, apart: 2 },
+                    work,
+                );
             }
         }
     }
