@@ -273,7 +273,11 @@ impl<'a, T: Real> Sweep<'a, T> {
         for z in (0..columns - columns % V::COUNT).step_by(V::COUNT) {
             // SAFETY: the columns z .. z + V::COUNT lie in the plane.
             unsafe {
-                let columns = Columns { first: plane.add(2 * z), stride: n + 2 };
+                let columns = Columns {
+                    first: plane.add(2 * z),
+                    stride: n + 2,
+                    fetch_next_pair: (z / V::COUNT).is_multiple_of(2),
+                };
                 self.column::<V, _>(direction, columns, work);
             }
         }
@@ -313,7 +317,11 @@ impl<'a, T: Real> Sweep<'a, T> {
         unsafe {
             let first = self.data.add(2 * first);
             if lanes == V::COUNT {
-                self.column::<V, _>(direction, Columns { first, stride: self.plane }, work);
+                self.column::<V, _>(
+                    direction,
+                    Columns { first, stride: self.plane, fetch_next_pair: block.is_multiple_of(2) },
+                    work,
+                );
             } else {
                 self.column::<V, _>(
                     direction,
