@@ -5,12 +5,12 @@ use std::time::Duration;
 
 use fixpair::cosmology::Cosmology;
 
-use crate::universe::REDSHIFT;
 use crate::statistics::{
     Kind, ROUNDING, band, correlation, deviation, differences, error_of_mean, estimates, mean,
     power_difference, quadratic_mean, ranges,
 };
 use crate::suite::{Half, Suite, Variant};
+use crate::universe::REDSHIFT;
 
 /// Sigma and what it is worth, as text: a scatter that is only rounding is exact.
 fn sigma_text(ratio: f64) -> String {
