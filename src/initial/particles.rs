@@ -138,11 +138,9 @@ pub fn displace<T: Real>(
         }
     };
     match psi2 {
-        Some(psi2) => {
-            walk::<T, 0, 2>(exec, brick, [], [psi1, psi2], &|run, [], [one, two]| {
-                write(run, one, Some(two))
-            })?;
-        }
+        Some(psi2) => walk::<T, 0, 2>(exec, brick, [], [psi1, psi2], &|run, [], [one, two]| {
+            write(run, one, Some(two));
+        })?,
         None => walk::<T, 0, 1>(exec, brick, [], [psi1], &|run, [], [one]| write(run, one, None))?,
     }
     if lost.load(Ordering::Relaxed) { Err(Error::NotFinite) } else { Ok(()) }
