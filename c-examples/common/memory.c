@@ -1,0 +1,29 @@
+/* posix_memalign is not in C99. In C11, aligned_alloc(align, size) does the same, where size is a multiple of align. */
+#define _POSIX_C_SOURCE 200112L
+
+#include "memory.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void *memory_take(struct fixpair_layout layout) {
+    void *memory = NULL;
+    /* A layout of no bytes is one of an alignment all the same; NULL has to keep meaning that there is no memory. */
+    size_t size = layout.size > 0 ? layout.size : 1;
+    /* posix_memalign takes no alignment below that of a pointer. */
+    size_t align = layout.align > sizeof(void *) ? layout.align : sizeof(void *);
+    if (posix_memalign(&memory, align, size) != 0) {
+        fprintf(stderr, "no %lu bytes of memory left\n", (unsigned long)size);
+        return NULL;
+    }
+    return memset(memory, 0, size);
+}
+
+double *memory_take_doubles(size_t count) {
+    struct fixpair_layout layout;
+    layout.size = count > SIZE_MAX / sizeof(double) ? SIZE_MAX : count * sizeof(double);
+    layout.align = 64;
+    return memory_take(layout);
+}
