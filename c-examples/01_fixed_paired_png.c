@@ -118,7 +118,7 @@ static int check_box(const struct workshop *shop) {
     return outside == 0 ? 0 : claim(0, "%lu coordinates are outside [0, L)", (unsigned long)outside);
 }
 
-/* Is `file` a coordinate x of the library, as a float and in the file's unit? Across the edge of the box, 0 is L. */
+/* Is `file` the float of x? Across the edge of the box, 0 is L. */
 static int is_float_of(float file, double x, double period) {
     double difference = fabs((double)file - x);
     if (period > 0.0 && difference > 0.5 * period) difference = period - difference;
@@ -204,7 +204,7 @@ static int check_spectra(const struct workshop *shop) {
         double worst = worst_ratio(shop, u);
         failures += claim(worst < 1e-12, "%s has the input power in every shell, to %.1e", kinds[u].name, worst);
     }
-    /* The first shell has 18 modes in half space; that they all have the mean modulus is the business of fixing. */
+    /* The first shell has 26 modes, 13 of them independent: one sigma is 28%. */
     double worst = worst_ratio(shop, NORMAL);
     failures += claim(worst > 0.01, "%s scatters about it, by up to %.0f%%", kinds[NORMAL].name, 100.0 * worst);
     /* f_NL Phi is some 1e-3: in power, f_NL^2 Phi^2 in the mean and 1e-3 of a shell's chance correlations. */

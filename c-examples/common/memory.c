@@ -1,4 +1,4 @@
-/* posix_memalign is not in C99. In C11, aligned_alloc(align, size) does the same, where size is a multiple of align. */
+/* posix_memalign is not in C99; in C11 there is aligned_alloc(layout.align, layout.size). */
 #define _POSIX_C_SOURCE 200112L
 
 #include "memory.h"
@@ -10,11 +10,9 @@
 
 void *memory_take(struct fixpair_layout layout) {
     void *memory = NULL;
-    /* A layout of no bytes is one of an alignment all the same; NULL has to keep meaning that there is no memory. */
+    /* For no bytes posix_memalign may give NULL, which has to keep meaning that there is no memory. */
     size_t size = layout.size > 0 ? layout.size : 1;
-    /* posix_memalign takes no alignment below that of a pointer. */
-    size_t align = layout.align > sizeof(void *) ? layout.align : sizeof(void *);
-    if (posix_memalign(&memory, align, size) != 0) {
+    if (posix_memalign(&memory, layout.align, size) != 0) {
         fprintf(stderr, "no %lu bytes of memory left\n", (unsigned long)size);
         return NULL;
     }
