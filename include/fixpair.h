@@ -211,7 +211,7 @@ typedef struct fixpair_exec {
 
 /* Bytes and alignment of a piece of memory that a kernel asks its caller for. */
 typedef struct fixpair_layout {
-  /* Bytes. */
+  /* Bytes: a multiple of `align`, as aligned_alloc wants it. */
   size_t size;
   /* Alignment of its first byte: a power of two. */
   size_t align;
@@ -418,7 +418,7 @@ typedef struct fixpair_components_f32 {
 
 /* Raw sums of one bin. */
 typedef struct fixpair_bin {
-  /* Modes, counting k and -k. */
+  /* Modes, counting k and -k; 0 where no mode falls into the bin. */
   uint64_t modes;
   /* Sum of |n| over them: times (2 pi/L)/modes it is the mean k. */
   double wavenumber;
