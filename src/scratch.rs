@@ -12,7 +12,7 @@ pub const ALIGN: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Layout {
-    /// Bytes.
+    /// Bytes: a multiple of `align`, as aligned_alloc wants it.
     pub size: usize,
     /// Alignment of its first byte: a power of two.
     pub align: usize,

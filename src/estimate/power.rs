@@ -15,7 +15,7 @@ use crate::walk::{chunks, runs};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Bin {
-    /// Modes, counting k and -k.
+    /// Modes, counting k and -k; 0 where no mode falls into the bin.
     pub modes: u64,
     /// Sum of |n| over them: times (2 pi/L)/modes it is the mean k.
     pub wavenumber: f64,
