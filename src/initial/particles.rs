@@ -66,12 +66,19 @@ impl<'a, T: Real> Components<'a, T> {
         if self.particles == particles { Ok(()) } else { Err(Error::Length) }
     }
 
+    /// Writes one component of consecutive particles.
+    ///
     /// # Safety
-    /// `particle` is below the number of particles and no other thread touches it now.
+    /// The particles exist, and no other thread touches them now.
     #[inline(always)]
-    unsafe fn write(&self, axis: usize, particle: usize, value: T) {
-        // SAFETY: the element belongs to this value (constructors), and to the calling thread alone (caller).
-        unsafe { self.start[axis].add(particle * self.stride).write(value) }
+    unsafe fn write(&self, axis: usize, first: usize, values: &[T]) {
+        let stride = self.stride;
+        // SAFETY: the element belongs to this value (constructors).
+        let start = unsafe { self.start[axis].add(first * stride) };
+        for (i, &value) in values.iter().enumerate() {
+            // SAFETY: as above, and to the calling thread alone (caller).
+            unsafe { start.add(i * stride).write(value) }
+        }
     }
 }
 
@@ -122,7 +129,7 @@ pub fn displace<T: Real>(
     let write = |run: Run, psi1: &[T], psi2: Option<&[T]>| {
         let first = number(brick, run.index);
         let moved = Moved { run, n: brick.n(), axis, step, psi1, psi2 };
-        let put = |i: usize, place: T, speed: T| {
+        let put = |i: usize, place: &[T], speed: &[T]| {
             // SAFETY: a run's particles are numbered consecutively and inside the checked length, and runs hold different particles.
             unsafe {
                 position.write(axis, first + i, place);
@@ -166,70 +173,65 @@ struct Moved<'a, T> {
 }
 
 impl<T: Real> Moved<'_, T> {
-    /// Hands position and velocity of each particle to `put`; returns whether all of them are finite.
+    /// Hands positions and velocities to `put`, block by block; returns whether all of them are finite.
     #[inline(always)]
-    fn each(&self, mut put: impl FnMut(usize, T, T)) -> bool {
+    fn each(&self, mut put: impl FnMut(usize, &[T], &[T])) -> bool {
         let mut sound = true;
+        let (mut one, mut two) = ([0.0; BLOCK], [0.0; BLOCK]);
         let (mut place, mut speed) = ([T::ZERO; BLOCK], [T::ZERO; BLOCK]);
         for (block, psi1) in self.psi1.chunks(BLOCK).enumerate() {
             let first = block * BLOCK;
-            sound &= match self.psi2 {
-                Some(psi2) => {
-                    let psi2 = &psi2[first..first + psi1.len()];
-                    self.block(
-                        first,
-                        &mut place,
-                        &mut speed,
-                        |i| (psi1[i].to_f64(), psi2[i].to_f64()),
-                        psi1.len(),
-                    )
-                }
-                None => self.block(first, &mut place, &mut speed, |i| (psi1[i].to_f64(), 0.0), psi1.len()),
-            };
-            for (i, (&place, &speed)) in place[..psi1.len()].iter().zip(&speed).enumerate() {
-                put(first + i, place, speed);
+            load(&mut one, psi1);
+            if let Some(psi2) = self.psi2 {
+                load(&mut two, &psi2[first..first + psi1.len()]);
             }
+            sound &= self.block(first, &one, &two, &mut place, &mut speed);
+            put(first, &place[..psi1.len()], &speed[..psi1.len()]);
         }
         sound
     }
 
+    /// Loops over whole blocks without branches, so that the compiler makes vectors of them.
     #[inline(always)]
     fn block(
         &self,
         first: usize,
+        one: &[f64; BLOCK],
+        two: &[f64; BLOCK],
         place: &mut [T; BLOCK],
         speed: &mut [T; BLOCK],
-        psi: impl Fn(usize) -> (f64, f64),
-        count: usize,
     ) -> bool {
         let box_size = self.step.box_size;
         let cell = box_size / self.n as f64;
         let along = if self.axis == 2 { 1.0 } else { 0.0 };
         let q = self.run.index[self.axis] as f64 + along * first as f64;
         let edge = T::from_f64(box_size);
-        let (mut near, mut finite) = (true, true);
-        for i in 0..count {
-            let (one, two) = psi(i);
-            let x = (q + along * f64::from(i as i32)) * cell + (one + two);
-            let wrapped = wrap_once(x, box_size);
-            let v = T::from_f64(self.step.first_velocity * one + self.step.second_velocity * two);
-            near &= wrapped >= 0.0 && wrapped < box_size;
-            finite &= v.is_finite();
+        let mut x = [0.0; BLOCK];
+        let mut outside = 0;
+        for i in 0..BLOCK {
+            let unwrapped = (q + along * f64::from(i as i32)) * cell + (one[i] + two[i]);
+            x[i] = wrap_once(unwrapped, box_size);
+            outside += u64::from(!(x[i] >= 0.0 && x[i] < box_size));
+        }
+        if outside > 0 {
+            x.iter_mut().for_each(|x| *x = wrap(*x, box_size));
+        }
+        let mut lost = 0;
+        for i in 0..BLOCK {
             // Rounding to the mesh's type may reach the far edge, which is the near edge of the next box.
-            let x = T::from_f64(wrapped);
-            place[i] = if x >= edge { T::ZERO } else { x };
-            speed[i] = v;
+            let rounded = T::from_f64(x[i]);
+            place[i] = if rounded >= edge { T::ZERO } else { rounded };
+            speed[i] = T::from_f64(self.step.first_velocity * one[i] + self.step.second_velocity * two[i]);
+            lost += u64::from(!(place[i] >= T::ZERO && speed[i] - speed[i] == T::ZERO));
         }
-        if near {
-            return finite;
-        }
-        for i in 0..count {
-            let (one, two) = psi(i);
-            let x = T::from_f64(wrap((q + along * f64::from(i as i32)) * cell + (one + two), box_size));
-            place[i] = if x >= edge { T::ZERO } else { x };
-            finite &= place[i] >= T::ZERO;
-        }
-        finite
+        lost == 0
+    }
+}
+
+#[inline(always)]
+fn load<T: Real>(block: &mut [f64; BLOCK], values: &[T]) {
+    for (to, from) in block.iter_mut().zip(values) {
+        *to = from.to_f64();
     }
 }
 
