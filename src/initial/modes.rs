@@ -130,19 +130,29 @@ fn combine_modes<T: Real, F: Factor, const ADD: bool>(
     })
 }
 
+/// Modes whose factors are computed at a time.
+const BLOCK: usize = 32;
+
 #[inline(always)]
 fn multiply_row<T: Real, F: Factor, const ADD: bool>(to: &mut [T], from: &[T], n: [f64; 3], factor: &F) {
-    for (m, (t, f)) in to.chunks_exact_mut(2).zip(from.chunks_exact(2)).enumerate() {
-        let c = factor.at([n[0], n[1], n[2] + f64::from(m as i32)]);
-        let (mut re, mut im) = (c * f[0].to_f64(), c * f[1].to_f64());
-        if F::IMAGINARY {
-            (re, im) = (-im, re);
+    let mut factors = [0.0; BLOCK];
+    for (block, (to, from)) in to.chunks_mut(2 * BLOCK).zip(from.chunks(2 * BLOCK)).enumerate() {
+        // The whole block at any length of the row: a loop of fixed length becomes vectors.
+        let z = n[2] + (block * BLOCK) as f64;
+        for (m, c) in factors.iter_mut().enumerate() {
+            *c = factor.at([n[0], n[1], z + f64::from(m as i32)]);
         }
-        if ADD {
-            (re, im) = (t[0].to_f64() + re, t[1].to_f64() + im);
+        for ((t, f), &c) in to.chunks_exact_mut(2).zip(from.chunks_exact(2)).zip(&factors) {
+            let (mut re, mut im) = (c * f[0].to_f64(), c * f[1].to_f64());
+            if F::IMAGINARY {
+                (re, im) = (-im, re);
+            }
+            if ADD {
+                (re, im) = (t[0].to_f64() + re, t[1].to_f64() + im);
+            }
+            t[0] = T::from_f64(re);
+            t[1] = T::from_f64(im);
         }
-        t[0] = T::from_f64(re);
-        t[1] = T::from_f64(im);
     }
 }
 
