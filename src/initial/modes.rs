@@ -3,6 +3,7 @@
 //! Mode numbers are n = (i, j, l), k = (2 pi/L) n. The Nyquist modes, |n_a| = N/2 on any axis of the smaller mesh, stand for two
 //! wave vectors at once; derivatives of them are not defined, products alias onto them, and they are set to zero.
 
+use crate::cosmology::mode_table_length;
 use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
@@ -18,15 +19,9 @@ pub(crate) trait Factor: Sync {
     fn at(&self, n: [f64; 3]) -> f64;
 }
 
-/// The largest |n|^2 of a mesh of side `n`, plus one: the length of a table by integer |n|^2.
-#[must_use]
-pub const fn table_length(n: usize) -> usize {
-    3 * (n / 2) * (n / 2) + 1
-}
-
 /// f_k <- f_k table(|n|^2), in place; Nyquist modes become zero.
 ///
-/// `modes`: Fourier `brick`; `table`: at least [`table_length`] values.
+/// `modes`: Fourier `brick`; `table`: at least [`mode_table_length`] values.
 ///
 /// # Errors
 /// `Brick` for a brick of configuration space, `Length` for short arrays.
@@ -35,7 +30,7 @@ pub const fn table_length(n: usize) -> usize {
 pub fn scale_by_table<T: Real>(modes: &mut [T], brick: &Brick, table: &[f64], exec: &dyn Exec) -> Result<()> {
     brick.check_space(Space::Fourier)?;
     let n = brick.n();
-    if table.len() < table_length(n) {
+    if table.len() < mode_table_length(n)? {
         return Err(Error::Length);
     }
     walk::<T, 1, 0>(exec, brick, [modes], [], &|run, [row], []| {

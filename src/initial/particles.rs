@@ -222,7 +222,7 @@ impl<T: Real> Moved<'_, T> {
             let rounded = T::from_f64(x[i]);
             place[i] = if rounded >= edge { T::ZERO } else { rounded };
             speed[i] = T::from_f64(self.step.first_velocity * one[i] + self.step.second_velocity * two[i]);
-            lost += u64::from(!(place[i] >= T::ZERO && speed[i] - speed[i] == T::ZERO));
+            lost += u64::from(!(place[i] >= T::ZERO && speed[i].is_finite()));
         }
         lost == 0
     }
