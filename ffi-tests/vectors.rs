@@ -79,9 +79,9 @@ pub(crate) static VECTORS: LazyLock<PathBuf> = LazyLock::new(|| {
 });
 
 fn scalar_cases(cases: &mut Cases) {
-    let messages = Error::ALL.iter().fold(Hash::new().bytes(b"ok"), |hash, error| {
-        hash.bytes(error.message().to_bytes())
-    });
+    let messages = Error::ALL
+        .iter()
+        .fold(Hash::new().bytes(b"ok"), |hash, error| hash.bytes(error.message().to_bytes()));
     cases.add("status_message", messages);
     cases.add("version", Hash::new().bytes(env!("CARGO_PKG_VERSION").as_bytes()));
     let block = philox4x32_10([1, 2, 3, 4], [5, 6]);
@@ -198,12 +198,15 @@ fn linears<'a>(c: &Cosmology, k: &'a [f64], power: &'a [f64], transfer: &'a [f64
 pub(crate) fn default_linear() -> Linear<'static> {
     let c = Cosmology::goliat();
     let fit = EisensteinHu::new(&c, Wiggles::With).expect("a fit");
-    Linear::from_eisenstein_hu(fit, c.n_s, 1.0).and_then(|linear| linear.with_sigma8(0.8)).expect("a spectrum")
+    Linear::from_eisenstein_hu(fit, c.n_s, 1.0)
+        .and_then(|linear| linear.with_sigma8(0.8))
+        .expect("a spectrum")
 }
 
 /// sqrt(P_Phi/V), and alpha at z = 32, by |n|^2.
 pub(crate) fn mode_tables() -> [Vec<f64>; 2] {
-    let poisson = Poisson::new(&Cosmology::goliat(), default_linear(), 1.0 / 33.0, Convention::Cmb).expect("alpha");
+    let poisson =
+        Poisson::new(&Cosmology::goliat(), default_linear(), 1.0 / 33.0, Convention::Cmb).expect("alpha");
     let mut tables = [(); 2].map(|()| vec![0.0; mode_table_length(N).expect("a length")]);
     potential_amplitude_table(&Serial, &poisson, N, BOX, &mut tables[0]).expect("a table");
     alpha_table(&Serial, &poisson, N, BOX, &mut tables[1]).expect("a table");

@@ -192,9 +192,9 @@ fn stage_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
         let mut scratch = Memory::new(layout);
         let scratch = scratch.bytes(layout.size);
         power_sums(&mut bins, &edges, &density, second, &brick, scratch, &Serial).expect("sums");
-        let hash = bins.iter().fold(Hash::new(), |hash, bin| {
-            hash.integers(&[bin.modes]).doubles(&[bin.wavenumber, bin.power])
-        });
+        let hash = bins
+            .iter()
+            .fold(Hash::new(), |hash, bin| hash.integers(&[bin.modes]).doubles(&[bin.wavenumber, bin.power]));
         add(name, hash);
     }
 }

@@ -264,6 +264,9 @@ impl<'a, T: Real> Tables<'a, T> {
     /// `Version` if `memory` does not hold tables of this number type; `Scratch` or `Alignment` as [`Tables::new`].
     pub fn view(memory: &'a [u8]) -> Result<Self> {
         let mut rest = memory;
+        if memory.len() < ALIGN {
+            return Err(Error::Scratch);
+        }
         if !memory.as_ptr().addr().is_multiple_of(ALIGN) {
             return Err(Error::Alignment);
         }
