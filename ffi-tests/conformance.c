@@ -14,7 +14,7 @@ enum { EXECUTORS = 5, POOLS = 3 };
 /* "white_modes", "slab", ".f64" */
 static void check_named(const char *name, const char *kind, const char *suffix, uint64_t hash) {
     char full[64];
-    sprintf(full, "%s%s%s", name, kind, suffix);
+    snprintf(full, sizeof full, "%s%s%s", name, kind, suffix);
     check_case(full, hash);
 }
 
@@ -108,7 +108,7 @@ static void spectrum(int number, const fixpair_cosmology *cosmology, const fixpa
     MUST(fixpair_linear_sigma(values + 2 * WAVES, 5.0, cosmology, linear));
     MUST(fixpair_alpha(values + 2 * WAVES + 1, k, WAVES, cosmology, linear, 32.0, FIXPAIR_CONVENTION_CMB));
     MUST(fixpair_alpha(values + 3 * WAVES + 1, k, WAVES, cosmology, linear, 32.0, FIXPAIR_CONVENTION_LSS));
-    sprintf(name, "linear.%d", number);
+    snprintf(name, sizeof name, "linear.%d", number);
     check_case(name, hash_bytes(HASH_START, values, sizeof values));
 }
 

@@ -153,32 +153,32 @@ static void attempt(fixpair_status_t expected, int outputs_too, const char *what
 #define ACCEPTED(change) SPOILED(FIXPAIR_OK, change)
 
 static void pointer_fault(fixpair_status_t code, int pointer, void *value, const char *what) {
-    char text[64];
+    char text[96];
     restore();
     t.a.p[pointer] = value;
-    sprintf(text, "pointer %d %s", pointer, what);
+    snprintf(text, sizeof text, "pointer %d %s", pointer, what);
     attempt(code, 1, text);
 }
 
 static void length_fault(fixpair_status_t code, int number, size_t value, const char *what) {
-    char text[64];
+    char text[96];
     restore();
     t.a.n[number] = value;
-    sprintf(text, "length %d %s", number, what);
+    snprintf(text, sizeof text, "length %d %s", number, what);
     attempt(code, 1, text);
 }
 
 static void overlap_faults(int first, int second) {
     const slot *a = &t.slots[first], *b = &t.slots[second];
     char *start = (char *)t.good.p[first];
-    char text[32];
+    char text[64];
     if ((a->role == IN && b->role == IN) || b->role == NONE || b->role == EXEC || a->role == EXEC || a->size == 0) {
         return;
     }
-    sprintf(text, "is pointer %d", first);
+    snprintf(text, sizeof text, "is pointer %d", first);
     pointer_fault(FIXPAIR_ERROR_OVERLAP, second, start, text);
     if (a->size > b->align && a->size % b->align == 0) {
-        sprintf(text, "is the end of pointer %d", first);
+        snprintf(text, sizeof text, "is the end of pointer %d", first);
         pointer_fault(FIXPAIR_ERROR_OVERLAP, second, start + a->size - b->align, text);
     }
 }
