@@ -1,3 +1,11 @@
 //! The C interface as C, C++ and Python see it.
+//!
+//! [`vectors`] computes named cases through the Rust interface. The programs of this folder compute the same cases through
+//! `fixpair.h` and compare, bit for bit; then they try every bad input that the header speaks of. [`native`] builds the
+//! libraries and the programs, [`programs`] runs them.
 
 mod header;
+mod native;
+mod programs;
+mod vectors;
+mod vectors_real;

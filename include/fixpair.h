@@ -674,7 +674,8 @@ fixpair_status_t fixpair_philox4x32_10(uint32_t *output,
  *      realisation
  *      amplitude      amplitude_len >= 3 (n/2)^2 + 1 factors by integer |n|^2, as fixpair_potential_amplitude_table gives; or NULL, 0
  *      exec           or NULL
- * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, or why the brick is refused
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, _NOT_FINITE for a factor that is NaN,
+ *          infinite, or within 16 times the largest number of the precision, or why the brick is refused
  * Cost: about 17 ns a mode and core with AVX2; no scratch
  */
 fixpair_status_t fixpair_white_modes_f64(double *modes,
@@ -1184,8 +1185,8 @@ fixpair_status_t fixpair_displacement_f32(float *psi,
  *      box_size  L
  *      c1, c2    velocity over displacement: a H f1 and a H f2, H = 100 E(a) km/s per Mpc/h
  *      exec      or NULL
- * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _BRICK, _HOOK; FIXPAIR_ERROR_NOT_FINITE for c1 and c2, or for
- *          displacements that are NaN or infinite, after which position and velocity are undefined
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _BRICK, _HOOK; FIXPAIR_ERROR_NOT_FINITE for box_size, c1 and c2, or
+ *          for displacements that are NaN or infinite, after which position and velocity are undefined
  */
 fixpair_status_t fixpair_displace_f64(const struct fixpair_components_f64 *position,
                                       const struct fixpair_components_f64 *velocity,

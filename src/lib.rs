@@ -35,5 +35,8 @@ pub mod estimate;
 
 pub mod capi;
 
+#[cfg(all(feature = "freestanding", not(feature = "std"), not(test)))]
+mod freestanding;
+
 #[cfg(test)]
 mod reference;

@@ -406,9 +406,13 @@ struct BuiltIn {
     workspace_len: usize,
 }
 
+/// Bytes set aside for it at the start of the work space, on every platform: a part of the documented size.
+const HEAD: usize = 256;
+const _: () = assert!(size_of::<BuiltIn>() <= HEAD);
+
 fn workspace_layout<T: Real>(n: usize) -> Result<Layout> {
     let workspace = Transform::<T>::workspace(n)?;
-    Layout::EMPTY.and::<u8>(size_of::<BuiltIn>())?.and::<u8>(workspace.size)
+    Layout::EMPTY.and::<u8>(HEAD)?.and::<u8>(workspace.size)
 }
 
 unsafe fn init<H: Hook>(
@@ -437,15 +441,13 @@ unsafe fn init<H: Hook>(
         let configuration = Brick::whole_padded(n, Space::Configuration, padding)?;
         let fourier = Brick::whole_padded(n, Space::Fourier, padding)?;
         let start = scratch.as_mut_ptr();
-        // A whole number of cache lines: `BuiltIn` is aligned to one.
-        let head = size_of::<BuiltIn>();
         let built_in = BuiltIn {
             tables: tables.as_ptr(),
             tables_len,
             exec,
             configuration,
-            workspace: start.add(head),
-            workspace_len: scratch.len() - head,
+            workspace: start.add(HEAD),
+            workspace_len: scratch.len() - HEAD,
         };
         start.cast::<BuiltIn>().write(built_in);
         let parts = Parts {

@@ -127,7 +127,8 @@ pub unsafe extern "C" fn fixpair_philox4x32_10(
 ///      realisation
 ///      amplitude      amplitude_len >= 3 (n/2)^2 + 1 factors by integer |n|^2, as fixpair_potential_amplitude_table gives; or NULL, 0
 ///      exec           or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, or why the brick is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, _NOT_FINITE for a factor that is NaN,
+///          infinite, or within 16 times the largest number of the precision, or why the brick is refused
 /// Cost: about 17 ns a mode and core with AVX2; no scratch
 ///
 /// # Safety

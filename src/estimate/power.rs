@@ -26,8 +26,9 @@ pub struct Bin {
 /// Scratch of [`power_sums`]: the bins of each chunk, and the bin of each |n|^2 up to the last edge.
 ///
 /// # Errors
-/// `Table` if the edges are not increasing, `Overflow` if the bytes do not fit the address space.
+/// `Brick` for a brick of configuration space, `Table` if the edges are not increasing, `Overflow` if the bytes do not fit the address space.
 pub fn power_sums_scratch(brick: &Brick, edges: &[u64]) -> Result<Layout> {
+    brick.check_space(Space::Fourier)?;
     check_edges(edges)?;
     let bins = edges.len() - 1;
     let cells = chunks(brick).checked_mul(bins).ok_or(Error::Overflow)?;

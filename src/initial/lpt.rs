@@ -83,6 +83,10 @@ pub fn displacement<T: Real>(
     if modes.n() > brick.n() {
         return Err(Error::Brick);
     }
+    // Before the first mode is written: the transform would find it too late.
+    if out.len() != fft.length() {
+        return Err(Error::Length);
+    }
     map_modes(out, &modes, source, brick, &InverseGradient { along: along(axis), scale }, exec)?;
     fft.inverse(out)
 }

@@ -99,8 +99,8 @@ pub struct Step {
 /// hold exactly as many particles as the brick cells.
 ///
 /// # Errors
-/// `Range` for an axis above 2 or a box that is not positive, `Brick`, `Length`; `NotFinite` if a displacement is NaN or infinite or
-/// so large that the position is lost: outputs are then written but meaningless.
+/// `NotFinite` for the step, `Range` for an axis above 2 or a box that is not positive, `Brick`, `Length`; `NotFinite` also if a
+/// displacement is NaN or infinite or so large that the position is lost: outputs are then written but meaningless.
 ///
 /// Cost: one pass over the displacements and the two outputs.
 pub fn displace<T: Real>(
@@ -114,11 +114,12 @@ pub fn displace<T: Real>(
     exec: &dyn Exec,
 ) -> Result<()> {
     brick.check_space(Space::Configuration)?;
-    if axis > 2 || !(step.box_size > 0.0 && T::from_f64(step.box_size).is_finite()) {
-        return Err(Error::Range);
-    }
-    if !(step.first_velocity.is_finite() && step.second_velocity.is_finite()) {
+    let Step { box_size, first_velocity, second_velocity } = *step;
+    if [box_size, first_velocity, second_velocity].iter().any(|x| !x.is_finite()) {
         return Err(Error::NotFinite);
+    }
+    if axis > 2 || !(box_size > 0.0 && T::from_f64(box_size).is_finite()) {
+        return Err(Error::Range);
     }
     let particles = brick.elements();
     position.check_length(particles)?;

@@ -1,0 +1,112 @@
+"""fixpair.h for ctypes: structures, and functions that raise the library's message."""
+
+import ctypes
+import functools
+
+c_double, c_float, c_int32, c_size_t, c_uint64, c_void_p = (
+    ctypes.c_double, ctypes.c_float, ctypes.c_int32, ctypes.c_size_t, ctypes.c_uint64, ctypes.c_void_p)
+
+
+def structure(name, **fields):
+    return type(name, (ctypes.Structure,), {"_fields_": list(fields.items())})
+
+
+Brick = structure("Brick", n=c_size_t, space=c_int32, start=c_size_t * 3, count=c_size_t * 3, stride=c_size_t * 3)
+Layout = structure("Layout", size=c_size_t, align=c_size_t)
+Body = ctypes.CFUNCTYPE(None, c_void_p, c_size_t)
+ParallelFor = ctypes.CFUNCTYPE(c_int32, c_void_p, c_size_t, Body, c_void_p)
+Exec = structure("Exec", context=c_void_p, parallel_for=ParallelFor)
+# Data is passed as an address: both precisions have one type.
+Pass = ctypes.CFUNCTYPE(c_int32, c_void_p, c_void_p)
+Sum = ctypes.CFUNCTYPE(c_int32, c_void_p, ctypes.POINTER(c_double), c_size_t)
+Fft = structure("Fft", struct_size=c_size_t, context=c_void_p, forward=Pass, inverse=Pass, sum=Sum,
+                configuration=Brick, fourier=Brick, length=c_size_t)
+Realisation = structure("Realisation", struct_size=c_size_t, seed=c_uint64, scheme=c_int32, amplitude=c_int32,
+                        phase=c_int32, nyquist=c_int32)
+Cosmology = structure("Cosmology", struct_size=c_size_t, omega_m=c_double, omega_de=c_double, omega_r=c_double,
+                      omega_b=c_double, h=c_double, n_s=c_double, w0=c_double, wa=c_double, t_cmb=c_double)
+Growth = structure("Growth", d=c_double, f=c_double, d2=c_double, f2=c_double)
+Linear = structure("Linear", struct_size=c_size_t, source=c_int32, normalisation=c_int32, k=ctypes.POINTER(c_double),
+                   value=ctypes.POINTER(c_double), rows=c_size_t, amount=c_double)
+Conditions = structure("Conditions", struct_size=c_size_t, realisation=Realisation, cosmology=Cosmology, linear=Linear,
+                       redshift=c_double, box_size=c_double, f_nl=c_double, g_nl=c_double, convention=c_int32,
+                       order=c_int32)
+Components = structure("Components", x=c_void_p, y=c_void_p, z=c_void_p, stride=c_size_t, length=c_size_t)
+Bin = structure("Bin", modes=c_uint64, wavenumber=c_double, power=c_double)
+
+CONFIGURATION, FOURIER = 0, 1
+NORMAL, FIXED, FIXED_TO_MEAN = 0, 1, 2
+ORIGINAL, INVERTED = 0, 1
+ZERO, FILLED = 0, 1
+CMB, LSS = 0, 1
+POWER, TRANSFER, EISENSTEIN_HU, EISENSTEIN_HU_SMOOTH = 0, 1, 2, 3
+AS_GIVEN, SIGMA8, AMPLITUDE, A_S = 0, 1, 2, 3
+FIRST, SECOND = 1, 2
+
+# What a letter of a signature stands for: p pointer, n size, d double, i int32, u uint64.
+LETTERS = {"p": c_void_p, "n": c_size_t, "d": c_double, "i": c_int32, "u": c_uint64}
+
+SIGNATURES = {
+    "brick_whole": "pnin", "brick_slab": "pninn", "brick_transposed_slab": "pnnn", "brick_reals": "pp",
+    "exec_self_test": "p", "threads_create": "ppn",
+    "realisation_init": "pu", "philox4x32_10": "ppp",
+    "cosmology_init": "p", "radiation_density": "pddd", "expansion": "ppnp", "growth_factors": "ppnp",
+    "growth_suppression": "pp", "linear_power": "ppnppd", "linear_transfer": "ppnpp", "linear_sigma": "pdpp",
+    "alpha": "ppnppdi", "mode_table_length": "pn", "potential_amplitude_table": "pnndppip",
+    "alpha_table": "pnndppdip", "conditions_init": "pu", "particle_ids": "pnpup", "power_sums_scratch": "pppn",
+}
+TWINS = {
+    "fft_tables_scratch": "pn", "fft_tables_init": "pnn", "fft_scratch": "pn", "fft_init": "ppnnpnp",
+    "fft_self_test": "ppn", "white_modes": "pnpppnp", "impose": "pnppp", "modes_from_field": "pnppp",
+    "initial_conditions_scratch": "pppp", "initial_conditions": "ppppppnp", "scale_modes": "pnppnp",
+    "copy_modes": "pnppnpp", "add_local_scratch": "pp", "add_local": "pnpddppnpnp",
+    "second_order_source": "pnpnpppppnp", "displacement": "pnpnpndpp", "displace": "ppppnpndddp",
+    "power_sums": "pnpnppnppnp",
+}
+SIGNATURES.update({f"{name}_{real}": signature for name, signature in TWINS.items() for real in ("f32", "f64")})
+
+
+class Refused(Exception):
+    """A negative status and its message."""
+
+    def __init__(self, status, message):
+        super().__init__(message)
+        self.status = status
+
+
+def address(argument):
+    """What a pointer argument becomes: structures and arrays are passed by reference."""
+    if isinstance(argument, (ctypes.Structure, ctypes.Array, ctypes._SimpleCData)):
+        return ctypes.addressof(argument)
+    return argument
+
+
+class Library:
+    """The functions of the shared library, without their prefix. `calls` keeps the last good call of each."""
+
+    def __init__(self, path):
+        self.shared = ctypes.CDLL(path)
+        self.calls = {}
+        others = {
+            "status_message": (ctypes.c_char_p, [c_int32]), "version": (ctypes.c_char_p, []),
+            "threads_destroy": (None, [c_void_p]), "fft_next_side": (c_size_t, [c_size_t]),
+            "fft_padding_f32": (c_size_t, [c_size_t]), "fft_padding_f64": (c_size_t, [c_size_t]),
+        }
+        for name, (result, arguments) in others.items():
+            function = getattr(self.shared, "fixpair_" + name)
+            function.restype, function.argtypes = result, arguments
+            setattr(self, name, functools.partial(self.noted, name, function))
+        for name, signature in SIGNATURES.items():
+            function = getattr(self.shared, "fixpair_" + name)
+            function.restype, function.argtypes = c_int32, [LETTERS[letter] for letter in signature]
+            setattr(self, name, functools.partial(self.checked, name, function))
+
+    def noted(self, name, function, *arguments):
+        self.calls[name] = arguments
+        return function(*arguments)
+
+    def checked(self, name, function, *arguments):
+        status = function(*map(address, arguments))
+        if status != 0:
+            raise Refused(status, self.status_message(status).decode())
+        self.calls[name] = arguments

@@ -1,0 +1,138 @@
+//! Runs the programs. Each prints what does not hold and fails, and the test shows it.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
+
+use crate::native::{
+    FREESTANDING, Language, SYSTEM, attempt, compiler, folder, program, root, run, shared_library,
+    shared_program, tool,
+};
+use crate::vectors::VECTORS;
+
+#[test]
+fn c_gets_the_bits_of_rust() {
+    run(Command::new(program(Language::C, "conformance.c", "conformance", &["-pthread"])).arg(&*VECTORS));
+}
+
+#[test]
+fn c_is_refused_with_memory_untouched() {
+    run(&mut Command::new(program(Language::C, "refusals.c", "refusals", &["-pthread"])));
+}
+
+#[test]
+fn cpp_gets_the_bits_of_rust() {
+    run(Command::new(shared_program(Language::Cpp, "host.cpp", "host")).arg(&*VECTORS));
+}
+
+#[test]
+fn python_gets_the_bits_of_rust() {
+    let mut python = Command::new(tool("PYTHON", "python3"));
+    python.arg("-B").arg(root().join("ffi-tests/test_ctypes.py")).arg(shared_library());
+    run(python.arg(&*VECTORS).arg(root().join("include/fixpair.h")));
+}
+
+#[test]
+fn no_parameter_reaches_a_panic() {
+    run(&mut Command::new(program(Language::C, "fuzz.c", "fuzz", &[])));
+}
+
+/// Undefined symbols of an object or archive, without the underscore that some platforms put before them.
+fn undefined(file: &Path) -> BTreeSet<String> {
+    let output = run(Command::new("nm").arg("-u").arg(file));
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let symbols = text.lines().filter_map(|line| line.split_whitespace().last());
+    symbols.map(|symbol| symbol.trim_start_matches('_').to_owned()).collect()
+}
+
+/// The functions that the header declares.
+fn declared() -> BTreeSet<String> {
+    let header = std::fs::read_to_string(root().join("include/fixpair.h")).expect("the header");
+    let code = header.lines().filter(|line| !line.trim_start().starts_with(['*', '/', '#']));
+    let names = code.filter_map(|line| {
+        let (before, _) = line.split_once('(')?;
+        let name = before.rsplit([' ', '*']).next()?;
+        name.starts_with("fixpair_").then(|| name.to_owned())
+    });
+    names.collect()
+}
+
+#[test]
+fn the_c_programs_call_every_function() {
+    let declared = declared();
+    assert!(declared.len() > 50, "the header was read: {declared:?}");
+    // Neither refuses anything: they have no argument, or any will do.
+    let never = [
+        "status_message",
+        "version",
+        "threads_destroy",
+        "fft_padding_f32",
+        "fft_padding_f64",
+        "fft_next_side",
+    ];
+    for (source, excepted) in [("conformance.c", &[][..]), ("refusals.c", &never)] {
+        let object = folder().join(source).with_extension("o");
+        run(compiler(Language::C, source).arg("-c").arg("-o").arg(&object));
+        let called = undefined(&object);
+        let missing = declared.iter().filter(|name| !called.contains(*name));
+        let missing: Vec<_> = missing.filter(|name| !excepted.contains(&&name["fixpair_".len()..])).collect();
+        assert!(missing.is_empty(), "{source} does not call {missing:?}");
+    }
+}
+
+/// The C programs once more, with the sanitizers of the compiler, where it has them.
+#[test]
+fn sanitizers_find_nothing() {
+    let options = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-pthread"];
+    let empty = folder().join("empty.c");
+    std::fs::write(&empty, "int main(void) { return 0; }\n").expect("the target folder can be written");
+    let mut trial = Command::new(tool("CC", "cc"));
+    trial.args(options).arg(&empty).args(SYSTEM).arg("-o").arg(folder().join("empty"));
+    if !attempt(&mut trial).status.success()
+        || !attempt(&mut Command::new(folder().join("empty"))).status.success()
+    {
+        println!("skipped: this C compiler has no address and undefined-behaviour sanitizers");
+        return;
+    }
+    for name in ["conformance", "refusals", "fuzz"] {
+        let sanitized = program(Language::C, &format!("{name}.c"), &format!("{name}_sanitized"), &options);
+        let mut command = Command::new(sanitized);
+        if name == "conformance" {
+            command.arg(&*VECTORS);
+        }
+        run(&mut command);
+    }
+}
+
+/// The library without std asks for nothing but copies of memory and arithmetic, and a program without a C library links it.
+#[test]
+#[cfg_attr(
+    not(all(target_os = "linux", target_arch = "x86_64")),
+    ignore = "its start and exit are those of Linux on x86-64"
+)]
+fn a_freestanding_program_links_it_without_malloc() {
+    let library = FREESTANDING.join("libfixpair.a");
+    let wanted = undefined(&library);
+    let forbidden =
+        ["malloc", "calloc", "realloc", "free", "posix_memalign", "aligned_alloc", "abort", "exit", "mmap"];
+    for symbol in &wanted {
+        assert!(
+            !forbidden.contains(&symbol.as_str()) && !symbol.starts_with("pthread"),
+            "the freestanding library needs {symbol}"
+        );
+    }
+    let program = folder().join("freestanding_program");
+    let mut compile = compiler(Language::C, "freestanding.c");
+    compile.args([
+        "-ffreestanding",
+        "-fno-builtin",
+        "-fno-stack-protector",
+        "-nostdlib",
+        "-static",
+        "-no-pie",
+    ]);
+    run(compile.arg(&library).arg("-o").arg(&program));
+    let left = undefined(&program);
+    assert!(left.is_empty(), "still undefined: {left:?}");
+    run(&mut Command::new(program));
+}
