@@ -55,9 +55,7 @@ impl Brick {
         count: [usize; 3],
         stride: [usize; 3],
     ) -> Result<Self> {
-        if n == 0 || !n.is_multiple_of(2) {
-            return Err(Error::MeshSize);
-        }
+        check_side(n)?;
         let reals = n.checked_add(2).and_then(|m| m.checked_mul(n)?.checked_mul(n)?.checked_mul(8));
         if reals.is_none_or(|bytes| isize::try_from(bytes).is_err()) {
             return Err(Error::Overflow);
@@ -129,6 +127,7 @@ impl Brick {
 
     /// Elements from one row to the next.
     fn row(n: usize, space: Space) -> Result<usize> {
+        check_side(n)?;
         let row = (n / 2).checked_add(1).and_then(|modes| modes.checked_mul(2 / space.width()));
         let row = row.ok_or(Error::Overflow)?;
         row.checked_mul(n).map(|_| row).ok_or(Error::Overflow)
@@ -238,6 +237,11 @@ impl Brick {
     pub fn check_space(&self, space: Space) -> Result<()> {
         if self.space == space { Ok(()) } else { Err(Error::Brick) }
     }
+}
+
+/// `MeshSize` if a side is zero or odd.
+fn check_side(n: usize) -> Result<()> {
+    if n == 0 || !n.is_multiple_of(2) { Err(Error::MeshSize) } else { Ok(()) }
 }
 
 #[cfg(test)]
