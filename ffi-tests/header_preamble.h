@@ -17,7 +17,7 @@
  *  4. Unless stated, no pointer may be NULL, pointers are aligned to their element, and memory that is written overlaps nothing else.
  *     A length follows its array. It counts elements, for scratch bytes. An array of length 0 may be NULL.
  *  5. Arguments come in this order: outputs, inputs, scratch, exec. Enumerations travel as int32_t. A struct that may grow
- *     begins with its size: fill it with its _init function.
+ *     begins with its size: fill it with its _init function, or by hand where it has none.
  *  6. The same seed is the same universe, bit for bit: on any number of threads, in any decomposition, in both precisions
  *     (single is rounded double), for every mode that two meshes share.
  *  7. Transform and threads are hooks: pass your own FFT (fixpair_fft_f64) and your own loop (fixpair_exec), or the built-in ones.

@@ -17,7 +17,7 @@
  *  4. Unless stated, no pointer may be NULL, pointers are aligned to their element, and memory that is written overlaps nothing else.
  *     A length follows its array. It counts elements, for scratch bytes. An array of length 0 may be NULL.
  *  5. Arguments come in this order: outputs, inputs, scratch, exec. Enumerations travel as int32_t. A struct that may grow
- *     begins with its size: fill it with its _init function.
+ *     begins with its size: fill it with its _init function, or by hand where it has none.
  *  6. The same seed is the same universe, bit for bit: on any number of threads, in any decomposition, in both precisions
  *     (single is rounded double), for every mode that two meshes share.
  *  7. Transform and threads are hooks: pass your own FFT (fixpair_fft_f64) and your own loop (fixpair_exec), or the built-in ones.
@@ -165,7 +165,8 @@ typedef int32_t fixpair_status_t;
  * Configuration space: element (x, y, z) is a real. Fourier space: element (i, j, l) is a complex number, stored as (re, im), of
  * the mode k = (2 pi/L) (i, j, l); axes 0 and 1 hold i and j in the order 0, 1, ..., n/2, -(n/2-1), ..., -1, axis 2 holds
  * l = 0..n/2. The element with local indices (a, b, c) is at a stride[0] + b stride[1] + c stride[2].
- * Strides count elements: reals in configuration space, complex numbers in Fourier space.
+ * Strides count elements: reals in configuration space, complex numbers in Fourier space. What lies between the elements is
+ * ignored by all functions, and overwritten by transforms alone.
  *
  * Fill it with one of the functions below, or by hand for any other layout (a pencil, say). Functions refuse with
  * FIXPAIR_ERROR_MESH_SIZE an n that is zero or odd, with FIXPAIR_ERROR_OVERFLOW one whose cube does not fit memory, and with
@@ -210,7 +211,7 @@ typedef struct fixpair_exec {
 
 /* Bytes and alignment of a piece of memory that a kernel asks its caller for. */
 typedef struct fixpair_layout {
-  /* Bytes. */
+  /* Bytes: a multiple of `align`, as aligned_alloc wants it. */
   size_t size;
   /* Alignment of its first byte: a power of two. */
   size_t align;
@@ -223,6 +224,12 @@ typedef struct fixpair_layout {
  * brick; inverse replaces modes by f(x) = sum_k F(k) exp(+i k.x) over both members of each Hermitian pair. Neither divides by
  * n^3: the library does. That is FFTW's r2c and c2r, in place, as they are. Both return 0, or anything else to give up,
  * which makes the kernel return FIXPAIR_ERROR_HOOK. fixpair_fft_self_test_f64 tries a hook.
+ *
+ * Kernels call it from the thread that they were called from, once at a time, on arrays that lie in their scratch, aligned to 64 bytes,
+ * or that the host passed, aligned as the host has them: plans for another array than their own need that.
+ *
+ * Fill it by hand: zeros, then struct_size, the functions, the bricks (fixpair_brick_whole with padding 0 is FFTW's layout in one
+ * process) and the length (the larger of fixpair_brick_reals of both).
  */
 typedef struct fixpair_fft_f64 {
   /* sizeof(fixpair_fft_f64). */
@@ -327,7 +334,10 @@ typedef struct fixpair_growth {
  * directly would have 1.3% more power in the paper's cosmology.)
  *
  * Between rows ln P is interpolated in ln k by monotone cubics. Below the first row, which should be below k = 1e-3 h/Mpc,
- * T is constant and P goes as k^n_s; above the last, a power law with the last slope.
+ * T is constant and P goes as k^n_s; above the last, a power law with the last slope. P and T are one another by P = A k^n_s T^2,
+ * so that n_s of the cosmology must be that of the spectrum.
+ *
+ * fixpair_conditions_init fills one; else fill all members by hand.
  */
 typedef struct fixpair_linear {
   /* sizeof(fixpair_linear). */
@@ -342,7 +352,7 @@ typedef struct fixpair_linear {
   const double *value;
   /* Rows: 2 or more; 0 for the fits. */
   size_t rows;
-  /* What the spectrum is normalised to. */
+  /* What the spectrum is normalised to; not read with FIXPAIR_NORMALISE_AS_GIVEN. */
   double amount;
 } fixpair_linear;
 
@@ -408,7 +418,7 @@ typedef struct fixpair_components_f32 {
 
 /* Raw sums of one bin. */
 typedef struct fixpair_bin {
-  /* Modes, counting k and -k. */
+  /* Modes, counting k and -k; 0 where no mode falls into the bin. */
   uint64_t modes;
   /* Sum of |n| over them: times (2 pi/L)/modes it is the mean k. */
   double wavenumber;

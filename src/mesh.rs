@@ -127,11 +127,11 @@ impl Brick {
         Self::general(n, Space::Fourier, [0, first, 0], [n, rows, row], [row, row * n, 1])
     }
 
+    /// Elements from one row to the next.
     fn row(n: usize, space: Space) -> Result<usize> {
-        let modes = n / 2 + 1;
-        let row = modes * (2 / space.width());
-        row.checked_mul(n).ok_or(Error::Overflow)?;
-        Ok(row)
+        let row = (n / 2).checked_add(1).and_then(|modes| modes.checked_mul(2 / space.width()));
+        let row = row.ok_or(Error::Overflow)?;
+        row.checked_mul(n).map(|_| row).ok_or(Error::Overflow)
     }
 
     /// Cells or modes on a side of the whole mesh.
@@ -277,6 +277,11 @@ mod tests {
         assert_eq!(general(4, [0; 3], [4; 3], [usize::MAX / 2, 4, 1]), Err(Error::Overflow));
         assert_eq!(general(1 << 21, [0; 3], [1; 3], [1; 3]), Err(Error::Overflow));
         assert_eq!(general(usize::MAX - 1, [0; 3], [1; 3], [1; 3]), Err(Error::Overflow));
+        for space in [Space::Configuration, Space::Fourier] {
+            assert_eq!(Brick::whole(usize::MAX - 1, space), Err(Error::Overflow));
+            assert_eq!(Brick::whole_padded(8, space, usize::MAX / 2), Err(Error::Overflow));
+        }
+        assert_eq!(Brick::transposed_slab(usize::MAX - 1, 0, 1), Err(Error::Overflow));
         assert!(general(4, [4, 0, 0], [0, 4, 4], [0; 3]).is_ok_and(|brick| brick.is_empty()));
         assert!(general(4, [0; 3], [4; 3], [1, 4, 16]).is_ok(), "x innermost");
     }

@@ -12,7 +12,7 @@ pub const ALIGN: usize = 64;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)]
 pub struct Layout {
-    /// Bytes.
+    /// Bytes: a multiple of `align`, as aligned_alloc wants it.
     pub size: usize,
     /// Alignment of its first byte: a power of two.
     pub align: usize,
@@ -93,8 +93,6 @@ impl<'a> Arena<'a> {
 
 #[cfg(test)]
 mod tests {
-    use std::vec;
-
     use super::*;
 
     #[repr(align(64))]
@@ -119,6 +117,6 @@ mod tests {
         assert_eq!(Arena::new(&mut memory.0[..63], layout).err(), Some(Error::Scratch));
         assert_eq!(Arena::new(&mut memory.0[4..], layout).err(), Some(Error::Alignment));
         assert_eq!(Layout::EMPTY.and::<f64>(usize::MAX).err(), Some(Error::Overflow));
-        assert!(Arena::new(&mut vec![0; 0], Layout::EMPTY).is_ok());
+        assert!(Arena::new(&mut [], Layout::EMPTY).is_ok());
     }
 }

@@ -18,7 +18,7 @@ type PlanR2c<T> = unsafe extern "C" fn(c_int, c_int, c_int, *mut T, *mut T, c_ui
 type Execute = unsafe extern "C" fn(Plan);
 
 /// The number types of FFTW's libraries.
-pub trait Number: Copy + 'static {
+pub(super) trait Number: Copy + 'static {
     /// File name of the shared library.
     const LIBRARY: &'static str;
     /// Prefix of its functions.
@@ -36,16 +36,16 @@ impl Number for f32 {
 }
 
 /// In-place transforms of one array of side n, rows of n + 2 reals.
-pub struct Fftw<T: Number> {
+pub(super) struct Fftw<T: Number> {
     library: Library,
     plans: [Plan; 2],
     /// The array that is transformed: n n (n + 2) reals.
-    pub data: Vec<T>,
+    pub(super) data: Vec<T>,
 }
 
 impl<T: Number> Fftw<T> {
     /// Plans both directions, measuring if asked. `None` if the library is not on this machine.
-    pub fn new(n: usize, measure: bool, zero: T) -> Option<Self> {
+    pub(super) fn new(n: usize, measure: bool, zero: T) -> Option<Self> {
         let _one_at_a_time = PLANNER.lock().unwrap();
         // SAFETY: FFTW's initialisers do nothing but initialise FFTW.
         let library = unsafe { Library::new(T::LIBRARY) }.ok()?;
@@ -71,12 +71,12 @@ impl<T: Number> Fftw<T> {
     }
 
     /// Cells to modes, exp(-i k.x), not normalised.
-    pub fn forward(&mut self) {
+    pub(super) fn forward(&mut self) {
         self.call("execute", 0);
     }
 
     /// Modes to cells, not normalised.
-    pub fn inverse(&mut self) {
+    pub(super) fn inverse(&mut self) {
         self.call("execute", 1);
     }
 }

@@ -6,7 +6,9 @@
 
 mod arguments;
 mod axes;
-mod cosmology;
+#[path = "../common/boltzmann.rs"]
+#[allow(dead_code, reason = "the readers of files are for other programs")]
+mod boltzmann;
 mod drawing;
 mod figures;
 mod measure;
@@ -14,6 +16,7 @@ mod report;
 mod statistics;
 mod suite;
 mod text;
+mod universe;
 
 use std::io::Write as _;
 use std::process::ExitCode;

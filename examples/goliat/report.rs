@@ -3,12 +3,14 @@
 use std::fmt::Write as _;
 use std::time::Duration;
 
-use crate::cosmology::{OMEGA_LAMBDA, OMEGA_MATTER, REDSHIFT, SPECTRAL_INDEX};
+use fixpair::cosmology::Cosmology;
+
 use crate::statistics::{
     Kind, ROUNDING, band, correlation, deviation, differences, error_of_mean, estimates, mean,
     power_difference, quadratic_mean, ranges,
 };
 use crate::suite::{Half, Suite, Variant};
+use crate::universe::REDSHIFT;
 
 /// Sigma and what it is worth, as text: a scatter that is only rounding is exact.
 fn sigma_text(ratio: f64) -> String {
@@ -51,10 +53,11 @@ fn power_line(title: &str, sigma: [f64; 3], reference: [f64; 3], rho: &str) -> S
 pub(crate) fn text(suite: &Suite, threads: usize, elapsed: Duration) -> String {
     let configuration = &suite.configuration;
     let (size, length, fnl) = (configuration.size, configuration.length, configuration.fnl);
+    let Cosmology { omega_m, omega_de, n_s, .. } = Cosmology::goliat();
     let mut text = format!(
         "\nGOLIAT initial conditions: {seeds} seeds x {variants} variants of {size}^3 cells in ({length} Mpc/h)^3 \
          at z = {REDSHIFT}\n\
-         Omega_m = {OMEGA_MATTER}, Omega_Lambda = {OMEGA_LAMBDA}, n_s = {SPECTRAL_INDEX}, sigma_8 = 0.8; \
+         Omega_m = {omega_m}, Omega_Lambda = {omega_de}, n_s = {n_s}, sigma_8 = 0.8; \
          f_NL = 0 and {fnl}; {time:.1} s on {threads} threads\n\n",
         seeds = suite.seeds.len(),
         variants = Variant::COUNT,

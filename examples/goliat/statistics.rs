@@ -178,7 +178,6 @@ pub(crate) fn quadratic_mean(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cosmology;
     use crate::suite::Configuration;
 
     /// Two bins; the power of seed s is 10 + d(s) with the sign of the phase on an odd part, halved if fixed.
@@ -200,8 +199,7 @@ mod tests {
                 });
             }
         }
-        let spectrum = cosmology::spectrum().unwrap();
-        let configuration = Configuration { size: 16, length: 1.0, fnl: 100.0, spectrum };
+        let configuration = Configuration { size: 16, length: 1.0, fnl: 100.0 };
         Suite::new(configuration, (1..=4).collect(), measurements).unwrap()
     }
 

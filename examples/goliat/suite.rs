@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::Failure;
 use crate::arguments::Arguments;
-use crate::cosmology::{self, Spectrum};
 use crate::measure::measure;
+use crate::universe::Universe;
 
 /// The modulus of each mode: Rayleigh, or fixed to its r.m.s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,8 +76,6 @@ pub(crate) struct Configuration {
     pub(crate) length: f64,
     /// f_NL of the half that is not Gaussian (local, CMB convention).
     pub(crate) fnl: f64,
-    /// Linear theory at z = 0.
-    pub(crate) spectrum: Spectrum,
 }
 
 impl Configuration {
@@ -164,7 +162,8 @@ impl Suite {
     /// The first failure of a measurement.
     pub(crate) fn run(arguments: &Arguments, done: &(dyn Fn() + Sync)) -> Result<Self, Failure> {
         let Arguments { size, length, fnl, .. } = *arguments;
-        let configuration = Configuration { size, length, fnl, spectrum: cosmology::spectrum()? };
+        let configuration = Configuration { size, length, fnl };
+        let universe = Universe::new(size, length)?;
         let seeds: Vec<u64> = (1..).take(arguments.seeds).collect();
         let jobs = seeds.len() * Variant::COUNT;
         let next = AtomicUsize::new(0);
@@ -179,7 +178,7 @@ impl Suite {
                             return;
                         }
                         let (seed, variant) = (job / Variant::COUNT, Variant::all()[job % Variant::COUNT]);
-                        match measure(&configuration, seeds[seed], variant, seed == 0) {
+                        match measure(&configuration, &universe, seeds[seed], variant, seed == 0) {
                             Ok(measurement) => lock(&results)[job] = Some(measurement),
                             Err(error) => {
                                 lock(&failure).get_or_insert(error);

@@ -84,7 +84,10 @@ impl fixpair_cosmology {
 /// directly would have 1.3% more power in the paper's cosmology.)
 ///
 /// Between rows ln P is interpolated in ln k by monotone cubics. Below the first row, which should be below k = 1e-3 h/Mpc,
-/// T is constant and P goes as k^n_s; above the last, a power law with the last slope.
+/// T is constant and P goes as k^n_s; above the last, a power law with the last slope. P and T are one another by P = A k^n_s T^2,
+/// so that n_s of the cosmology must be that of the spectrum.
+///
+/// fixpair_conditions_init fills one; else fill all members by hand.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct fixpair_linear {
@@ -100,7 +103,7 @@ pub struct fixpair_linear {
     pub value: *const f64,
     /// Rows: 2 or more; 0 for the fits.
     pub rows: usize,
-    /// What the spectrum is normalised to.
+    /// What the spectrum is normalised to; not read with FIXPAIR_NORMALISE_AS_GIVEN.
     pub amount: f64,
 }
 

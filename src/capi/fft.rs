@@ -18,6 +18,12 @@ use crate::status::{Error, Result};
 /// brick; inverse replaces modes by f(x) = sum_k F(k) exp(+i k.x) over both members of each Hermitian pair. Neither divides by
 /// n^3: the library does. That is FFTW's r2c and c2r, in place, as they are. Both return 0, or anything else to give up,
 /// which makes the kernel return FIXPAIR_ERROR_HOOK. fixpair_fft_self_test_f64 tries a hook.
+///
+/// Kernels call it from the thread that they were called from, once at a time, on arrays that lie in their scratch, aligned to 64 bytes,
+/// or that the host passed, aligned as the host has them: plans for another array than their own need that.
+///
+/// Fill it by hand: zeros, then struct_size, the functions, the bricks (fixpair_brick_whole with padding 0 is FFTW's layout in one
+/// process) and the length (the larger of fixpair_brick_reals of both).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct fixpair_fft_f64 {

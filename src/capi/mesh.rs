@@ -15,7 +15,8 @@ pub const FIXPAIR_SPACE_FOURIER: i32 = 1;
 /// Configuration space: element (x, y, z) is a real. Fourier space: element (i, j, l) is a complex number, stored as (re, im), of
 /// the mode k = (2 pi/L) (i, j, l); axes 0 and 1 hold i and j in the order 0, 1, ..., n/2, -(n/2-1), ..., -1, axis 2 holds
 /// l = 0..n/2. The element with local indices (a, b, c) is at a stride[0] + b stride[1] + c stride[2].
-/// Strides count elements: reals in configuration space, complex numbers in Fourier space.
+/// Strides count elements: reals in configuration space, complex numbers in Fourier space. What lies between the elements is
+/// ignored by all functions, and overwritten by transforms alone.
 ///
 /// Fill it with one of the functions below, or by hand for any other layout (a pencil, say). Functions refuse with
 /// FIXPAIR_ERROR_MESH_SIZE an n that is zero or odd, with FIXPAIR_ERROR_OVERFLOW one whose cube does not fit memory, and with

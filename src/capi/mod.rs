@@ -1,6 +1,11 @@
 //! The C interface: checks everything at the border, then calls the kernels. It mirrors the rooms of the crate and is the only
 //! `extern "C"` in it. The documentation of each function is written for `fixpair.h`.
 #![allow(non_camel_case_types, reason = "the names of the header")]
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    rustdoc::invalid_html_tags,
+    reason = "the text is that of the header"
+)]
 
 pub mod cosmology;
 pub mod estimate;

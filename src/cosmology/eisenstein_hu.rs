@@ -190,19 +190,18 @@ impl Full {
     fn transfer(&self, k: f64) -> f64 {
         let cube = |x: f64| x * x * x;
         let q = k / (13.41 * self.k_equality); // 10
-        let bend = 386.0 / (1.0 + 69.9 * libm::pow(q, 1.08));
-        let pressureless = |alpha: f64, beta: f64| {
-            let l = libm::log(E + 1.8 * beta * q);
-            l / (l + (14.2 / alpha + bend) * q * q) // 19, 20
-        };
+        let bend = 386.0 / (1.0 + 69.9 * libm::exp(1.08 * libm::log(q)));
+        let [plain, shallow] = [1.0, self.beta_c].map(|beta| libm::log(E + 1.8 * beta * q));
+        let pressureless = |l: f64, alpha: f64| l / (l + (14.2 / alpha + bend) * q * q); // 19, 20
         let ks = k * self.sound_horizon;
         let x = ks / 5.4;
         let f = 1.0 / (1.0 + (x * x) * (x * x)); // 18
-        let cold = f * pressureless(1.0, self.beta_c) + (1.0 - f) * pressureless(self.alpha_c, self.beta_c); // 17
+        let cold = f * pressureless(shallow, 1.0) + (1.0 - f) * pressureless(shallow, self.alpha_c); // 17
         let shifted = ks / libm::cbrt(1.0 + cube(self.beta_node / ks)); // 22
         let sinc = if shifted < 1e-4 { 1.0 - shifted * shifted / 6.0 } else { libm::sin(shifted) / shifted };
-        let baryons = (pressureless(1.0, 1.0) / (1.0 + (ks / 5.2) * (ks / 5.2))
-            + self.alpha_b / (1.0 + cube(self.beta_b / ks)) * libm::exp(-libm::pow(k / self.k_silk, 1.4)))
+        let baryons = (pressureless(plain, 1.0) / (1.0 + (ks / 5.2) * (ks / 5.2))
+            + self.alpha_b / (1.0 + cube(self.beta_b / ks))
+                * libm::exp(-libm::exp(1.4 * libm::log(k / self.k_silk))))
             * sinc; // 21
         self.baryon_fraction * baryons + (1.0 - self.baryon_fraction) * cold // 16
     }

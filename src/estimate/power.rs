@@ -1,7 +1,7 @@
 //! The power spectrum of modes.
 //!
 //! P(k) = V <|f_k|^2> for modes with f(x) = sum_k f_k exp(+i k.x) in a box of volume V; the cross spectrum is V <Re f_k g_k*>.
-//! Bins are given by integers |n|^2, so that no mode lies on an edge by rounding: bin b holds edge[b] <= |n|^2 < edge[b+1].
+//! Bins are given by integers |n|^2, so that no mode lies on an edge by rounding: bin b holds `edge[b] <= |n|^2 < edge[b+1]`.
 //! N_modes counts both k and -k: 26, 66, 158, 234, 410, 470 for the unit shells b^2 <= |n|^2 < (b+1)^2, b = 1..6.
 
 use crate::exec::{Exec, Shared};
@@ -15,7 +15,7 @@ use crate::walk::{chunks, runs};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct Bin {
-    /// Modes, counting k and -k.
+    /// Modes, counting k and -k; 0 where no mode falls into the bin.
     pub modes: u64,
     /// Sum of |n| over them: times (2 pi/L)/modes it is the mean k.
     pub wavenumber: f64,

@@ -43,13 +43,22 @@ impl<V: Lanes> Access<V> for Line<V::Element> {
 pub(super) struct Columns<E> {
     pub(super) first: *mut E,
     pub(super) stride: usize,
+    /// Whether to ask for the second and third block to the right while reading this one.
+    pub(super) fetch_next_pair: bool,
 }
 
 impl<V: Lanes> Access<V> for Columns<V::Element> {
     #[inline(always)]
     unsafe fn get(self, index: usize) -> Complex<V> {
         // SAFETY: the columns are inside the mesh, says the caller.
-        let (re, im) = unsafe { V::load_columns(self.first.add(index * self.stride)) };
+        let from = unsafe { self.first.add(index * self.stride) };
+        // Hardware does not guess strides of a page or more. Two blocks at a time, since memory likes long stretches.
+        if self.fetch_next_pair {
+            V::prefetch(from.wrapping_add(4 * V::COUNT));
+            V::prefetch(from.wrapping_add(6 * V::COUNT));
+        }
+        // SAFETY: as above.
+        let (re, im) = unsafe { V::load_columns(from) };
         Complex { re, im }
     }
 

@@ -38,6 +38,10 @@ impl<V: Lanes> Kernel for Load<V> {
         unsafe {
             if count == V::COUNT {
                 while done + V::COUNT <= self.reals {
+                    // The block of rows that comes next.
+                    for row in 0..V::COUNT {
+                        V::prefetch(first.wrapping_add((V::COUNT + row) * stride + done));
+                    }
                     V::load_rows(first.add(done), stride, self.to.add(done * V::COUNT));
                     done += V::COUNT;
                 }

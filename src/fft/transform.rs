@@ -192,20 +192,29 @@ impl<'a, T: Real> Sweep<'a, T> {
                 (chunk * each..items.min((chunk + 1) * each)).for_each(|item| body(item, work.cast()));
             })
         };
-        // SAFETY: groups and blocks are disjoint parts of the mesh; each chunk runs once.
+        let planes = |group: usize, work: *mut T| {
+            // SAFETY: groups are disjoint planes; each chunk runs once, with a line of its own.
+            unsafe {
+                match direction {
+                    Direction::Forward => self.planes_forward::<V>(group, work),
+                    Direction::Inverse => self.planes_inverse::<V>(group, work),
+                }
+            }
+        };
+        let columns = |block: usize, work: *mut T| {
+            // SAFETY: blocks are disjoint columns; each chunk runs once, with a line of its own.
+            unsafe { self.x_columns::<V>(direction, block, work) }
+        };
         match direction {
-            Direction::Forward => {
-                share(groups, &|group, work| unsafe { self.planes_forward::<V>(group, work) })?;
-                share(blocks, &|block, work| unsafe { self.x_columns::<V>(direction, block, work) })
-            }
-            Direction::Inverse => {
-                share(blocks, &|block, work| unsafe { self.x_columns::<V>(direction, block, work) })?;
-                share(groups, &|group, work| unsafe { self.planes_inverse::<V>(group, work) })
-            }
+            Direction::Forward => share(groups, &planes).and_then(|()| share(blocks, &columns)),
+            Direction::Inverse => share(blocks, &columns).and_then(|()| share(groups, &planes)),
         }
     }
 
     /// Rows and columns of as many planes as there are lanes.
+    ///
+    /// # Safety
+    /// As [`Sweep::run`]; the planes of `group` are inside the mesh and nobody else's, and `work` is a line.
     unsafe fn planes_forward<V: Lanes<Element = T>>(&self, group: usize, work: *mut T) {
         let n = self.tables.n();
         let planes = group * V::COUNT..n.min((group + 1) * V::COUNT);
@@ -229,6 +238,9 @@ impl<'a, T: Real> Sweep<'a, T> {
     }
 
     /// Undoes `planes_forward`.
+    ///
+    /// # Safety
+    /// As `planes_forward`.
     unsafe fn planes_inverse<V: Lanes<Element = T>>(&self, group: usize, work: *mut T) {
         let n = self.tables.n();
         let planes = group * V::COUNT..n.min((group + 1) * V::COUNT);
@@ -252,19 +264,29 @@ impl<'a, T: Real> Sweep<'a, T> {
     }
 
     /// Columns along y of one plane, as many at a time as there are lanes.
+    ///
+    /// # Safety
+    /// As `planes_forward`.
     unsafe fn y_columns<V: Lanes<Element = T>>(&self, direction: Direction, plane: *mut T, work: *mut T) {
         let n = self.tables.n();
         let columns = n / 2 + 1;
         for z in (0..columns - columns % V::COUNT).step_by(V::COUNT) {
             // SAFETY: the columns z .. z + V::COUNT lie in the plane.
             unsafe {
-                let columns = Columns { first: plane.add(2 * z), stride: n + 2 };
+                let columns = Columns {
+                    first: plane.add(2 * z),
+                    stride: n + 2,
+                    fetch_next_pair: (z / V::COUNT).is_multiple_of(2),
+                };
                 self.column::<V, _>(direction, columns, work);
             }
         }
     }
 
     /// The columns along y that fill no vector: the same one of several planes side by side.
+    ///
+    /// # Safety
+    /// As `planes_forward`.
     unsafe fn y_leftovers<V: Lanes<Element = T>>(
         &self,
         direction: Direction,
@@ -284,6 +306,9 @@ impl<'a, T: Real> Sweep<'a, T> {
     }
 
     /// A block of columns along x. They are neighbours across the ends of rows.
+    ///
+    /// # Safety
+    /// As [`Sweep::run`]; the columns of `block` begin inside the mesh and are nobody else's, and `work` is a line.
     unsafe fn x_columns<V: Lanes<Element = T>>(&self, direction: Direction, block: usize, work: *mut T) {
         let n = self.tables.n();
         let first = block * V::COUNT;
@@ -292,7 +317,11 @@ impl<'a, T: Real> Sweep<'a, T> {
         unsafe {
             let first = self.data.add(2 * first);
             if lanes == V::COUNT {
-                self.column::<V, _>(direction, Columns { first, stride: self.plane }, work);
+                self.column::<V, _>(
+                    direction,
+                    Columns { first, stride: self.plane, fetch_next_pair: block.is_multiple_of(2) },
+                    work,
+                );
             } else {
                 self.column::<V, _>(
                     direction,

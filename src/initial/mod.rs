@@ -1,7 +1,7 @@
 //! From unit modes to particles: potential, primordial non-Gaussianity, density, displacements.
 //!
-//! The order is fixed: noise -> fix -> invert -> colour -> PNG -> transfer -> displace. [`initial_conditions`] does all of it in
-//! one call; the stages are public, one file each. Modes are normalised so that an inverse transform without a factor
+//! The order is fixed: noise -> fix -> invert -> colour -> PNG -> transfer -> displace. [`conditions::initial_conditions`] does
+//! all of it in one call; the stages are public, one file each. Modes are normalised so that an inverse transform without a factor
 //! gives the field: f(x) = sum_k f_k exp(+i k.x).
 
 pub mod conditions;
@@ -13,3 +13,5 @@ pub mod realise;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_whole;

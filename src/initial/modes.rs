@@ -3,6 +3,7 @@
 //! Mode numbers are n = (i, j, l), k = (2 pi/L) n. The Nyquist modes, |n_a| = N/2 on any axis of the smaller mesh, stand for two
 //! wave vectors at once; derivatives of them are not defined, products alias onto them, and they are set to zero.
 
+use crate::cosmology::mode_table_length;
 use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
@@ -18,15 +19,9 @@ pub(crate) trait Factor: Sync {
     fn at(&self, n: [f64; 3]) -> f64;
 }
 
-/// The largest |n|^2 of a mesh of side `n`, plus one: the length of a table by integer |n|^2.
-#[must_use]
-pub const fn table_length(n: usize) -> usize {
-    3 * (n / 2) * (n / 2) + 1
-}
-
 /// f_k <- f_k table(|n|^2), in place; Nyquist modes become zero.
 ///
-/// `modes`: Fourier `brick`; `table`: at least [`table_length`] values.
+/// `modes`: Fourier `brick`; `table`: at least [`mode_table_length`] values.
 ///
 /// # Errors
 /// `Brick` for a brick of configuration space, `Length` for short arrays.
@@ -35,7 +30,7 @@ pub const fn table_length(n: usize) -> usize {
 pub fn scale_by_table<T: Real>(modes: &mut [T], brick: &Brick, table: &[f64], exec: &dyn Exec) -> Result<()> {
     brick.check_space(Space::Fourier)?;
     let n = brick.n();
-    if table.len() < table_length(n) {
+    if table.len() < mode_table_length(n)? {
         return Err(Error::Length);
     }
     walk::<T, 1, 0>(exec, brick, [modes], [], &|run, [row], []| {
@@ -130,19 +125,29 @@ fn combine_modes<T: Real, F: Factor, const ADD: bool>(
     })
 }
 
+/// Modes whose factors are computed at a time.
+const BLOCK: usize = 32;
+
 #[inline(always)]
 fn multiply_row<T: Real, F: Factor, const ADD: bool>(to: &mut [T], from: &[T], n: [f64; 3], factor: &F) {
-    for (m, (t, f)) in to.chunks_exact_mut(2).zip(from.chunks_exact(2)).enumerate() {
-        let c = factor.at([n[0], n[1], n[2] + f64::from(m as u32)]);
-        let (mut re, mut im) = (c * f[0].to_f64(), c * f[1].to_f64());
-        if F::IMAGINARY {
-            (re, im) = (-im, re);
+    let mut factors = [0.0; BLOCK];
+    for (block, (to, from)) in to.chunks_mut(2 * BLOCK).zip(from.chunks(2 * BLOCK)).enumerate() {
+        // The whole block at any length of the row: a loop of fixed length becomes vectors.
+        let z = n[2] + (block * BLOCK) as f64;
+        for (m, c) in factors.iter_mut().enumerate() {
+            *c = factor.at([n[0], n[1], z + f64::from(m as i32)]);
         }
-        if ADD {
-            (re, im) = (t[0].to_f64() + re, t[1].to_f64() + im);
+        for ((t, f), &c) in to.chunks_exact_mut(2).zip(from.chunks_exact(2)).zip(&factors) {
+            let (mut re, mut im) = (c * f[0].to_f64(), c * f[1].to_f64());
+            if F::IMAGINARY {
+                (re, im) = (-im, re);
+            }
+            if ADD {
+                (re, im) = (t[0].to_f64() + re, t[1].to_f64() + im);
+            }
+            t[0] = T::from_f64(re);
+            t[1] = T::from_f64(im);
         }
-        t[0] = T::from_f64(re);
-        t[1] = T::from_f64(im);
     }
 }
 

@@ -10,6 +10,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
+use crate::simd::Simd;
 use crate::status::{Error, Result};
 use crate::walk::{Run, walk};
 
@@ -65,12 +66,19 @@ impl<'a, T: Real> Components<'a, T> {
         if self.particles == particles { Ok(()) } else { Err(Error::Length) }
     }
 
+    /// Writes one component of consecutive particles.
+    ///
     /// # Safety
-    /// `particle` is below the number of particles and no other thread touches it now.
+    /// The particles exist, and no other thread touches them now.
     #[inline(always)]
-    unsafe fn write(&self, axis: usize, particle: usize, value: T) {
-        // SAFETY: the element belongs to this value (constructors), and to the calling thread alone (caller).
-        unsafe { self.start[axis].add(particle * self.stride).write(value) }
+    unsafe fn write(&self, axis: usize, first: usize, values: &[T]) {
+        let stride = self.stride;
+        // SAFETY: the element belongs to this value (constructors).
+        let start = unsafe { self.start[axis].add(first * stride) };
+        for (i, &value) in values.iter().enumerate() {
+            // SAFETY: as above, and to the calling thread alone (caller).
+            unsafe { start.add(i * stride).write(value) }
+        }
     }
 }
 
@@ -117,27 +125,30 @@ pub fn displace<T: Real>(
     position.check_length(particles)?;
     velocity.check_length(particles)?;
     let lost = AtomicBool::new(false);
+    let simd = Simd::detect();
     let (position, velocity) = (&*position, &*velocity);
     let write = |run: Run, psi1: &[T], psi2: Option<&[T]>| {
         let first = number(brick, run.index);
         let moved = Moved { run, n: brick.n(), axis, step, psi1, psi2 };
-        let sound = moved.each(|i, place, speed| {
+        let put = |i: usize, place: &[T], speed: &[T]| {
             // SAFETY: a run's particles are numbered consecutively and inside the checked length, and runs hold different particles.
             unsafe {
                 position.write(axis, first + i, place);
                 velocity.write(axis, first + i, speed);
             }
-        });
+        };
+        let sound = simd.vectorise(
+            #[inline(always)]
+            || moved.each(put),
+        );
         if !sound {
             lost.store(true, Ordering::Relaxed);
         }
     };
     match psi2 {
-        Some(psi2) => {
-            walk::<T, 0, 2>(exec, brick, [], [psi1, psi2], &|run, [], [one, two]| {
-                write(run, one, Some(two))
-            })?;
-        }
+        Some(psi2) => walk::<T, 0, 2>(exec, brick, [], [psi1, psi2], &|run, [], [one, two]| {
+            write(run, one, Some(two));
+        })?,
         None => walk::<T, 0, 1>(exec, brick, [], [psi1], &|run, [], [one]| write(run, one, None))?,
     }
     if lost.load(Ordering::Relaxed) { Err(Error::NotFinite) } else { Ok(()) }
@@ -148,6 +159,9 @@ fn number(brick: &Brick, index: [usize; 3]) -> usize {
     let (start, count) = (brick.start(), brick.count());
     ((index[0] - start[0]) * count[1] + index[1] - start[1]) * count[2] + index[2] - start[2]
 }
+
+/// Particles moved at a time: enough for full vectors, few enough to stay in the first cache.
+const BLOCK: usize = 64;
 
 /// One run of particles on one axis.
 struct Moved<'a, T> {
@@ -160,36 +174,78 @@ struct Moved<'a, T> {
 }
 
 impl<T: Real> Moved<'_, T> {
-    /// Hands the position and velocity of each particle to `put`; returns whether all of them are finite.
+    /// Hands positions and velocities to `put`, block by block; returns whether all of them are finite.
     #[inline(always)]
-    fn each(&self, mut put: impl FnMut(usize, T, T)) -> bool {
-        let Self { run, axis, step, .. } = *self;
-        let cell = step.box_size / self.n as f64;
-        let along = if axis == 2 { 1.0 } else { 0.0 };
-        let q = run.index[axis] as f64;
-        let edge = T::from_f64(step.box_size);
+    fn each(&self, mut put: impl FnMut(usize, &[T], &[T])) -> bool {
         let mut sound = true;
-        for i in 0..run.length {
-            let one = self.psi1[i].to_f64();
-            let two = self.psi2.map_or(0.0, |psi2| psi2[i].to_f64());
-            let place = T::from_f64(wrap((q + along * i as f64) * cell + (one + two), step.box_size));
-            // Rounding to the mesh's type may reach the far edge, which is the near edge of the next box.
-            let place = if place >= edge { T::ZERO } else { place };
-            let speed = T::from_f64(step.first_velocity * one + step.second_velocity * two);
-            sound &= place >= T::ZERO && speed.is_finite();
-            put(i, place, speed);
+        let (mut one, mut two) = ([0.0; BLOCK], [0.0; BLOCK]);
+        let (mut place, mut speed) = ([T::ZERO; BLOCK], [T::ZERO; BLOCK]);
+        for (block, psi1) in self.psi1.chunks(BLOCK).enumerate() {
+            let first = block * BLOCK;
+            load(&mut one, psi1);
+            if let Some(psi2) = self.psi2 {
+                load(&mut two, &psi2[first..first + psi1.len()]);
+            }
+            sound &= self.block(first, &one, &two, &mut place, &mut speed);
+            put(first, &place[..psi1.len()], &speed[..psi1.len()]);
         }
         sound
     }
+
+    /// Loops over whole blocks without branches, so that the compiler makes vectors of them.
+    #[inline(always)]
+    fn block(
+        &self,
+        first: usize,
+        one: &[f64; BLOCK],
+        two: &[f64; BLOCK],
+        place: &mut [T; BLOCK],
+        speed: &mut [T; BLOCK],
+    ) -> bool {
+        let box_size = self.step.box_size;
+        let cell = box_size / self.n as f64;
+        let along = if self.axis == 2 { 1.0 } else { 0.0 };
+        let q = self.run.index[self.axis] as f64 + along * first as f64;
+        let edge = T::from_f64(box_size);
+        let mut x = [0.0; BLOCK];
+        let mut outside = 0;
+        for i in 0..BLOCK {
+            let unwrapped = (q + along * f64::from(i as i32)) * cell + (one[i] + two[i]);
+            x[i] = wrap_once(unwrapped, box_size);
+            outside += u64::from(!(x[i] >= 0.0 && x[i] < box_size));
+        }
+        if outside > 0 {
+            x.iter_mut().for_each(|x| *x = wrap(*x, box_size));
+        }
+        let mut lost = 0;
+        for i in 0..BLOCK {
+            // Rounding to the mesh's type may reach the far edge, which is the near edge of the next box.
+            let rounded = T::from_f64(x[i]);
+            place[i] = if rounded >= edge { T::ZERO } else { rounded };
+            speed[i] = T::from_f64(self.step.first_velocity * one[i] + self.step.second_velocity * two[i]);
+            lost += u64::from(!(place[i] >= T::ZERO && speed[i].is_finite()));
+        }
+        lost == 0
+    }
+}
+
+#[inline(always)]
+fn load<T: Real>(block: &mut [f64; BLOCK], values: &[T]) {
+    for (to, from) in block.iter_mut().zip(values) {
+        *to = from.to_f64();
+    }
+}
+
+/// x modulo L where x lies in the box or the ones beside it.
+#[inline(always)]
+fn wrap_once(x: f64, box_size: f64) -> f64 {
+    let x = if x < 0.0 { x + box_size } else { x };
+    if x >= box_size { x - box_size } else { x }
 }
 
 /// x modulo L; NaN where x is not finite.
-#[inline(always)]
 fn wrap(x: f64, box_size: f64) -> f64 {
-    if x >= 0.0 && x < box_size {
-        return x;
-    }
-    let once = if x < 0.0 { x + box_size } else { x - box_size };
+    let once = wrap_once(x, box_size);
     if once >= 0.0 && once < box_size {
         return once;
     }

@@ -119,7 +119,7 @@ pub fn second_order_particles<T: Real>(
     density: &[T],
     motion: &Motion,
     fft: &mut dyn Fft3<T>,
-    mut fine: Option<&mut (dyn Fft3<T> + '_)>,
+    fine: Option<&mut (dyn Fft3<T> + '_)>,
     meshes: [&mut [T]; 3],
     exec: &dyn Exec,
 ) -> Result<()> {
@@ -128,7 +128,7 @@ pub fn second_order_particles<T: Real>(
     if one.len() < length || two.len() < length {
         return Err(Error::Length);
     }
-    let work = product_mesh(fft, fine.as_deref_mut());
+    let work = product_mesh(fft, fine);
     second_order_products(density, &modes, work, [&mut *source, &mut *one, &mut *two], exec)?;
     let (source_modes, m) = (*work.fourier(), work.fourier().n() as f64);
     let unit = motion.box_size / core::f64::consts::TAU;

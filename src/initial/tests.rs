@@ -3,9 +3,10 @@ use std::vec;
 use std::vec::Vec;
 
 use super::lpt::{displacement, second_order_source};
-use super::modes::{copy_modes, scale_by_table, table_length};
+use super::modes::{copy_modes, scale_by_table};
 use super::particles::{Components, Step, displace, particle_ids};
 use super::png::{Local, add_local};
+use crate::cosmology::mode_table_length;
 use crate::exec::{Serial, Threads};
 use crate::fft::Fft3;
 use crate::mesh::{Brick, Space};
@@ -25,7 +26,7 @@ fn jumble(n: usize, salt: u64) -> Vec<f64> {
         })
         .collect();
     fft.forward(&mut data).unwrap();
-    let mut ones = vec![1.0; table_length(n)];
+    let mut ones = vec![1.0; mode_table_length(n).unwrap()];
     ones[0] = 0.0;
     scale_by_table(&mut data, &brick, &ones, &Serial).unwrap();
     data

@@ -7,9 +7,9 @@ use super::realisation::{Amplitude, Phase, Realisation};
 use crate::math::{neg_ln, sin_cos_turns, sqrt, sqrt_in_place};
 use crate::real::Real;
 
-/// Modes in a block: enough to keep several vector iterations of each stage in flight, few enough that the stages
-/// hand over in the first-level cache.
-const LANES: usize = 32;
+/// Modes in a block: a few vector iterations of each stage, handed over in the first-level cache; more would be
+/// wasted at the end of short rows.
+const LANES: usize = 16;
 
 /// The fourth counter word: this use of the generator ("whit"). Other uses of one seed take other tags.
 const DOMAIN: u32 = u32::from_be_bytes(*b"whit");
@@ -120,10 +120,9 @@ impl Draw {
             im[lane] = modulus[lane] * sine;
         }
         if let Some(colour) = colour {
-            let mut l = first as usize;
             for (lane, mode) in out.iter_mut().enumerate() {
+                let l = first as usize + lane;
                 *mode = [re[lane], im[lane]].map(|x| T::from_f64(x * colour[l * l]));
-                l += 1;
             }
         } else {
             for (lane, mode) in out.iter_mut().enumerate() {

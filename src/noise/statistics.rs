@@ -51,7 +51,7 @@ fn kolmogorov_smirnov(mut u: Vec<f64>) -> f64 {
         d.max((u - i as f64 / count).abs()).max(((i + 1) as f64 / count - u).abs())
     });
     let lambda = (count.sqrt() + 0.12 + 0.11 / count.sqrt()) * distance;
-    let series = |k: i32| f64::from(1 - 2 * (k % 2 ^ 1)) * (-2.0 * (f64::from(k) * lambda).powi(2)).exp();
+    let series = |k: i32| f64::from(1 - 2 * ((k + 1) % 2)) * (-2.0 * (f64::from(k) * lambda).powi(2)).exp();
     (2.0 * (1..100).map(series).sum::<f64>()).min(1.0)
 }
 

@@ -18,7 +18,7 @@ fn axis(n: usize, sign: f64, stride: usize, cube: &mut [Complex]) {
         })
         .collect();
     let mut line = vec![[0.0; 2]; n];
-    for first in (0..cube.len()).filter(|i| i / stride % n == 0) {
+    for first in (0..cube.len()).filter(|i| (i / stride).is_multiple_of(n)) {
         for (k, sum) in line.iter_mut().enumerate() {
             *sum = [0.0; 2];
             for j in 0..n {

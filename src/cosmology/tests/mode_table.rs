@@ -82,7 +82,7 @@ fn lengths_follow_the_corner_of_the_mesh() {
 #[test]
 fn bad_arguments_are_refused_and_leave_no_trace() {
     with_poisson(|poisson| {
-        let mut out = vec![7.0; 13];
+        let mut out = [7.0; 13];
         for (n, side, length, error) in [
             (4, 100.0, 12, Error::Length),
             (5, 100.0, 13, Error::MeshSize),

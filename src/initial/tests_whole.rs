@@ -1,0 +1,388 @@
+//! Claims about whole universes: power, pairs, matching, f_NL, convergence.
+
+use std::vec;
+use std::vec::Vec;
+
+use super::conditions::{InitialConditions, Order, initial_conditions, initial_conditions_scratch};
+use super::modes::{copy_modes, scale_by_table};
+use super::particles::Components;
+use super::png::Local;
+use super::realise::{Field, linear_density};
+use crate::cosmology::{
+    Convention, Cosmology, EisensteinHu, Linear, Wiggles, alpha_table, mode_table_length,
+    potential_amplitude_table,
+};
+use crate::estimate::power::{Bin, power_sums, power_sums_scratch};
+use crate::exec::{Exec, Serial, Threads};
+use crate::fft::Fft3;
+use crate::noise::{Amplitude, Phase, Realisation};
+use crate::real::Real;
+use crate::reference::built::{memory, serial};
+use crate::status::Error;
+
+const BOX: f64 = 1000.0;
+
+fn conditions(realisation: Realisation, f_nl: f64) -> InitialConditions<'static> {
+    let cosmology = Cosmology::goliat();
+    let fit = EisensteinHu::new(&cosmology, Wiggles::With).unwrap();
+    let linear = Linear::from_eisenstein_hu(fit, cosmology.n_s, 1.0).unwrap();
+    InitialConditions {
+        realisation,
+        cosmology,
+        linear: linear.with_sigma8(0.8).unwrap(),
+        redshift: 32.0,
+        box_size: BOX,
+        local: Local { f_nl, g_nl: 0.0 },
+        convention: Convention::Cmb,
+        order: Order::Second,
+    }
+}
+
+fn realisation(seed: u64, amplitude: Amplitude, phase: Phase) -> Realisation {
+    Realisation { amplitude, phase, ..Realisation::new(seed) }
+}
+
+/// sqrt(P_Phi/V) and alpha by |n|^2.
+fn tables(n: usize) -> (Vec<f64>, Vec<f64>) {
+    let poisson = conditions(Realisation::new(0), 0.0).poisson().unwrap();
+    let mut potential = vec![0.0; mode_table_length(n).unwrap()];
+    let mut alpha = potential.clone();
+    potential_amplitude_table(&Serial, &poisson, n, BOX, &mut potential).unwrap();
+    alpha_table(&Serial, &poisson, n, BOX, &mut alpha).unwrap();
+    (potential, alpha)
+}
+
+/// The modes of delta, products taken on a mesh of 3/2 the side.
+fn density<T: Real>(n: usize, realisation: Realisation, f_nl: f64) -> Vec<T> {
+    let (potential_amplitude, transfer) = tables(n);
+    let (mut fft, mut fine) = (serial::<T>(n), serial::<T>(3 * n / 2));
+    let mut out = vec![T::ZERO; fft.length()];
+    let mut mesh = vec![T::ZERO; fine.length()];
+    let local = Local { f_nl, g_nl: 0.0 };
+    let field = Field { realisation, potential_amplitude: &potential_amplitude, local, transfer: &transfer };
+    let mut partial = vec![[0.0]; 3 * n / 2];
+    linear_density(&mut out, &field, &mut fft, Some(&mut fine), &mut mesh, &mut partial, &Serial).unwrap();
+    out
+}
+
+fn bins<T: Real>(n: usize, modes: &[T], edges: &[u64]) -> Vec<Bin> {
+    let brick = *serial::<T>(n).fourier();
+    let mut bins = vec![Bin::default(); edges.len() - 1];
+    let scratch = memory(power_sums_scratch(&brick, edges).unwrap());
+    power_sums(&mut bins, edges, modes, None, &brick, scratch, &Serial).unwrap();
+    bins
+}
+
+#[test]
+fn fixed_field_has_exactly_the_input_power() {
+    let n = 32;
+    let (potential, alpha) = tables(n);
+    let edges: Vec<u64> = (1..=16).map(|b| b * b).collect();
+    // The input's mean over the modes of each bin, from the same sums over a field of its square roots.
+    let brick = *serial::<f64>(n).fourier();
+    let mut input = vec![0.0; brick.reals()];
+    input.iter_mut().step_by(2).for_each(|re| *re = 1.0);
+    let root: Vec<f64> = potential.iter().zip(&alpha).map(|(p, a)| p * a).collect();
+    scale_by_table(&mut input, &brick, &root, &Serial).unwrap();
+    let expected = bins(n, &input, &edges);
+    for phase in [Phase::Original, Phase::Inverted] {
+        let double = bins(n, &density::<f64>(n, realisation(3, Amplitude::Fixed, phase), 0.0), &edges);
+        let single = bins(n, &density::<f32>(n, realisation(3, Amplitude::Fixed, phase), 0.0), &edges);
+        for ((bin, double), single) in expected.iter().zip(double).zip(single) {
+            assert_eq!(bin.modes, double.modes);
+            // |w| = 1 and two products: a few roundings.
+            assert!((double.power / bin.power - 1.0).abs() < 4.0 * f64::EPSILON);
+            assert!((single.power / bin.power - 1.0).abs() < 4.0 * f64::from(f32::EPSILON));
+        }
+    }
+    let mean =
+        bins(n, &density::<f64>(n, realisation(3, Amplitude::FixedToMean, Phase::Original), 0.0), &edges);
+    for (bin, mean) in expected.iter().zip(mean) {
+        assert!((mean.power / bin.power / core::f64::consts::FRAC_PI_4 - 1.0).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn normal_field_scatters_about_the_input_power() {
+    let n = 32;
+    let edges = [1, 256];
+    let fixed =
+        bins(n, &density::<f64>(n, realisation(1, Amplitude::Fixed, Phase::Original), 0.0), &edges)[0];
+    // Each ratio of power-weighted sums has a relative scatter of order sqrt(2/effective modes); a mean of 16 seeds within 3 sigma.
+    let ratios: Vec<f64> = (1..=16)
+        .map(|seed| {
+            let normal = density::<f64>(n, realisation(seed, Amplitude::Normal, Phase::Original), 0.0);
+            bins(n, &normal, &edges)[0].power / fixed.power
+        })
+        .collect();
+    let (mean, error) = mean_and_error(&ratios);
+    assert!((mean - 1.0).abs() < 3.0 * error, "{mean} +- {error}");
+    assert!(error > 1e-4);
+}
+
+fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / (count - 1.0);
+    (mean, libm::sqrt(variance / count))
+}
+
+#[test]
+fn pairs_are_negatives_without_png_and_share_the_quadratic_term_with_it() {
+    let n = 16;
+    let pair = |f_nl: f64| {
+        let [original, inverted] = [Phase::Original, Phase::Inverted]
+            .map(|phase| density::<f64>(n, realisation(5, Amplitude::Normal, phase), f_nl));
+        (original, inverted)
+    };
+    let (original, inverted) = pair(0.0);
+    assert!(original.iter().zip(&inverted).all(|(a, b)| *a == -*b));
+    let (plus, minus) = pair(100.0);
+    let (double, _) = pair(200.0);
+    let size = original.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    for i in 0..plus.len() {
+        let even = 0.5 * (plus[i] + minus[i]);
+        let odd = 0.5 * (plus[i] - minus[i]);
+        assert!((odd - original[i]).abs() < 1e-15 * size, "the linear part is that of f_NL = 0");
+        assert!(
+            (double[i] - original[i] - 2.0 * even).abs() < 1e-15 * size,
+            "the even part is linear in f_NL"
+        );
+    }
+    let (flipped, _) = pair(-100.0);
+    let opposite =
+        |a: &[f64], b: &[f64], within: f64| a.iter().zip(b).all(|(a, b)| (a + b).abs() <= within * size);
+    assert!(!opposite(&plus, &minus, 1e-4), "inverting does not flip the whole field");
+    assert!(opposite(&flipped, &minus, 1e-15), "that would be f_NL -> -f_NL");
+}
+
+/// Skewness <W Phi^2> with each mode of W = Phi/P_Phi weighted by its inverse variance, over its expectation for f_NL = 1: a cubic
+/// estimator of f_NL that lives on squeezed triangles, W being dominated by small and Phi by large scales.
+struct Skewness {
+    n: usize,
+    inverse_power: Vec<f64>,
+    inverse_alpha: Vec<f64>,
+    expectation: f64,
+}
+
+impl Skewness {
+    fn new(n: usize) -> Self {
+        let (potential, alpha) = tables(n);
+        let invert = |values: &[f64]| values.iter().map(|&v| if v > 0.0 { 1.0 / v } else { 0.0 }).collect();
+        let power: Vec<f64> = potential.iter().map(|p| p * p).collect();
+        let mut this =
+            Self { n, inverse_power: invert(&power), inverse_alpha: invert(&alpha), expectation: 1.0 };
+        // <Phi_k* (Phi^2)_k> = f_NL [2 sum_q P_q P_(k-q) + 4 P_k sum_q P_q], q running over pairs whose sum the mesh holds: in the
+        // first sum k itself, in the second k + q. Both are convolutions.
+        let brick = *serial::<f64>(n).fourier();
+        let mut spectrum = vec![0.0; brick.reals()];
+        spectrum.iter_mut().step_by(2).for_each(|re| *re = 1.0);
+        scale_by_table(&mut spectrum, &brick, &power, &Serial).unwrap();
+        let mut ones = spectrum.clone();
+        scale_by_table(&mut ones, &brick, &this.inverse_power, &Serial).unwrap();
+        let mut inverse = ones.clone();
+        scale_by_table(&mut inverse, &brick, &this.inverse_power, &Serial).unwrap();
+        let (long, short) = (this.product(&spectrum, &ones), this.product(&spectrum, &spectrum));
+        this.expectation = 4.0 * inner(n, &long, &ones) + 2.0 * inner(n, &short, &inverse);
+        this
+    }
+
+    /// The modes of the product of two fields, free of aliasing.
+    fn product(&self, f: &[f64], g: &[f64]) -> Vec<f64> {
+        let (fft, mut fine) = (serial::<f64>(self.n), serial::<f64>(3 * self.n / 2));
+        let brick = *fine.fourier();
+        let [mut f, g] = [f, g].map(|modes| {
+            let mut mesh = vec![0.0; fine.length()];
+            copy_modes(&mut mesh, &brick, modes, fft.fourier(), &Serial).unwrap();
+            fine.inverse(&mut mesh).unwrap();
+            mesh
+        });
+        let m = brick.n() as f64;
+        f.iter_mut().zip(g).for_each(|(f, g)| *f *= g / (m * m * m));
+        fine.forward(&mut f).unwrap();
+        let mut out = vec![0.0; fft.length()];
+        copy_modes(&mut out, fft.fourier(), &f, &brick, &Serial).unwrap();
+        out
+    }
+
+    fn f_nl(&self, mut density: Vec<f64>) -> f64 {
+        let brick = *serial::<f64>(self.n).fourier();
+        scale_by_table(&mut density, &brick, &self.inverse_alpha, &Serial).unwrap();
+        let square = self.product(&density, &density);
+        scale_by_table(&mut density, &brick, &self.inverse_power, &Serial).unwrap();
+        inner(self.n, &density, &square) / self.expectation
+    }
+}
+
+/// sum_k Re f_k g_k* over all modes but the mean.
+fn inner(n: usize, f: &[f64], g: &[f64]) -> f64 {
+    let brick = *serial::<f64>(n).fourier();
+    let edges = [1, mode_table_length(n).unwrap() as u64];
+    let mut bin = [Bin::default()];
+    let scratch = memory(power_sums_scratch(&brick, &edges).unwrap());
+    power_sums(&mut bin, &edges, f, Some(g), &brick, scratch, &Serial).unwrap();
+    bin[0].power
+}
+
+#[test]
+fn skewness_of_the_potential_returns_the_input_f_nl() {
+    let n = 32;
+    let skewness = Skewness::new(n);
+    for amplitude in [Amplitude::Normal, Amplitude::Fixed] {
+        let measured = |f_nl: f64| -> Vec<f64> {
+            (1..=40)
+                .map(|seed| skewness.f_nl(density(n, realisation(seed, amplitude, Phase::Original), f_nl)))
+                .collect()
+        };
+        let (zero, hundred) = (measured(0.0), measured(100.0));
+        for (values, input) in [(&zero, 0.0), (&hundred, 100.0)] {
+            let (mean, error) = mean_and_error(values);
+            assert!((mean - input).abs() < 2.0 * error, "{amplitude:?}: {mean} +- {error} for {input}");
+        }
+        let differences: Vec<f64> = hundred.iter().zip(&zero).map(|(a, b)| a - b).collect();
+        let (mean, error) = mean_and_error(&differences);
+        let (_, unmatched) = mean_and_error(&hundred);
+        assert!((mean - 100.0).abs() < 3.0 * error && error < 0.5 * unmatched, "matched: {mean} +- {error}");
+    }
+}
+
+fn particles<T: Real>(
+    n: usize,
+    conditions: &InitialConditions<'_>,
+    exec: &dyn Exec,
+    fine: bool,
+) -> (Vec<T>, Vec<T>) {
+    let (mut fft, mut work) = (serial::<T>(n), serial::<T>(3 * n / 2));
+    let (mut x, mut v) = (vec![T::ZERO; 3 * n * n * n], vec![T::ZERO; 3 * n * n * n]);
+    let optional = fine.then_some(&work as &dyn Fft3<T>);
+    let scratch = memory(initial_conditions_scratch(conditions.order, &fft, optional).unwrap());
+    initial_conditions(
+        &mut Components::triples(&mut x).unwrap(),
+        &mut Components::triples(&mut v).unwrap(),
+        conditions,
+        &mut fft,
+        fine.then_some(&mut work as &mut dyn Fft3<T>),
+        scratch,
+        exec,
+    )
+    .unwrap();
+    (x, v)
+}
+
+/// Distance of positions across the periodic edge.
+fn shift(a: f64, b: f64) -> f64 {
+    let d = a - b;
+    d - BOX * libm::round(d / BOX)
+}
+
+#[test]
+fn second_order_is_a_correction_that_scales_as_the_growth_squared() {
+    let n = 16;
+    let at = |redshift: f64, order: Order| {
+        let mut conditions = conditions(realisation(9, Amplitude::Normal, Phase::Original), 0.0);
+        conditions.redshift = redshift;
+        conditions.order = order;
+        let growth = conditions.poisson().unwrap().growth();
+        let (x, v) = particles::<f64>(n, &conditions, &Serial, true);
+        (x, v, growth)
+    };
+    let correction = |redshift: f64| {
+        let (first, second) = (at(redshift, Order::First), at(redshift, Order::Second));
+        let x: Vec<f64> = second.0.iter().zip(&first.0).map(|(a, b)| shift(*a, *b)).collect();
+        let v: Vec<f64> = second.1.iter().zip(&first.1).map(|(a, b)| a - b).collect();
+        (x, v, second.2)
+    };
+    let (early, late) = (correction(63.0), correction(31.0));
+    let ratio = late.2.d2 / early.2.d2;
+    let size = late.0.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
+    for (a, b) in early.0.iter().zip(&late.0) {
+        // Differences of positions of order 1000 in f64.
+        assert!((b - ratio * a).abs() < 1e-9 * size.max(1.0));
+    }
+    // v2 = a H f2 Psi2, so that velocity and displacement of the correction are parallel.
+    let a = 1.0 / 32.0;
+    let factor = a * 100.0 * Cosmology::goliat().expansion(a).unwrap() * late.2.f2;
+    for (x, v) in late.0.iter().zip(&late.1) {
+        assert!((v - factor * x).abs() < 1e-9 * factor * size.max(1.0));
+    }
+    assert!(size > 1e-3, "and it is there");
+}
+
+#[test]
+fn the_one_call_does_not_depend_on_threads_and_single_follows_double() {
+    let n = 16;
+    let conditions = conditions(realisation(11, Amplitude::Fixed, Phase::Inverted), 100.0);
+    for fine in [false, true] {
+        let (x, v) = particles::<f64>(n, &conditions, &Serial, fine);
+        assert!(x.iter().all(|x| (0.0..BOX).contains(x)));
+        for threads in [2, 5] {
+            assert_eq!(
+                particles::<f64>(n, &conditions, &Threads::new(threads).unwrap(), fine),
+                (x.clone(), v.clone())
+            );
+        }
+        let (x32, v32) = particles::<f32>(n, &conditions, &Serial, fine);
+        let fastest = v.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        for i in 0..x.len() {
+            // Positions are rounded at the size of the box; displacements carry the error of f32 transforms.
+            assert!(shift(x[i], f64::from(x32[i])).abs() < 2e-7 * BOX);
+            assert!((v[i] - f64::from(v32[i])).abs() < 1e-5 * fastest);
+        }
+    }
+}
+
+#[test]
+fn coarse_and_fine_meshes_share_their_modes() {
+    let (coarse, fine) =
+        (density::<f64>(16, Realisation::new(2), 0.0), density::<f64>(24, Realisation::new(2), 0.0));
+    let mut shared = vec![0.0; coarse.len()];
+    let (small, large) = (*serial::<f64>(16).fourier(), *serial::<f64>(24).fourier());
+    copy_modes(&mut shared, &small, &fine, &large, &Serial).unwrap();
+    assert_eq!(shared, coarse);
+}
+
+#[test]
+fn bad_conditions_are_refused_before_anything_is_written() {
+    let n = 8;
+    let good = conditions(Realisation::new(1), 10.0);
+    let (mut x, mut v) = (vec![7.0; 3 * 512], vec![7.0; 3 * 512]);
+    let mut attempt = |conditions: &InitialConditions<'_>, fine: usize, bytes: usize| {
+        let (mut fft, mut work) = (serial::<f64>(n), serial::<f64>(fine));
+        let layout =
+            initial_conditions_scratch(conditions.order, &fft, Some(&work as &dyn Fft3<f64>)).unwrap();
+        let scratch = memory(layout);
+        let scratch = &mut scratch[..bytes.min(layout.size)];
+        let outcome = initial_conditions(
+            &mut Components::triples(&mut x).unwrap(),
+            &mut Components::triples(&mut v).unwrap(),
+            conditions,
+            &mut fft,
+            Some(&mut work as &mut dyn Fft3<f64>),
+            scratch,
+            &Serial,
+        );
+        if outcome.is_err() {
+            assert!(x.iter().chain(&v).all(|&value| value == 7.0));
+        }
+        outcome
+    };
+    let all = usize::MAX;
+    let mut bad = good;
+    bad.redshift = f64::NAN;
+    assert_eq!(attempt(&bad, 12, all), Err(Error::NotFinite));
+    bad = good;
+    bad.redshift = -1.0;
+    assert_eq!(attempt(&bad, 12, all), Err(Error::Range));
+    bad = good;
+    bad.box_size = 0.0;
+    assert_eq!(attempt(&bad, 12, all), Err(Error::Range));
+    bad = good;
+    bad.local.g_nl = f64::INFINITY;
+    assert_eq!(attempt(&bad, 12, all), Err(Error::NotFinite));
+    bad = good;
+    bad.local.g_nl = 1.0;
+    assert_eq!(attempt(&bad, 12, all), Err(Error::Brick), "a cube needs twice the side");
+    assert_eq!(attempt(&good, 10, all), Err(Error::Brick));
+    assert_eq!(attempt(&good, 12, 1000), Err(Error::Scratch));
+    assert_eq!(attempt(&good, 12, all), Ok(()));
+}
