@@ -32,6 +32,11 @@ impl Space {
     }
 }
 
+/// `MeshSize` if n is zero or odd.
+fn check_side(n: usize) -> Result<()> {
+    if n == 0 || !n.is_multiple_of(2) { Err(Error::MeshSize) } else { Ok(()) }
+}
+
 /// A rectangular part of a mesh in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Brick {
@@ -55,9 +60,7 @@ impl Brick {
         count: [usize; 3],
         stride: [usize; 3],
     ) -> Result<Self> {
-        if n == 0 || !n.is_multiple_of(2) {
-            return Err(Error::MeshSize);
-        }
+        check_side(n)?;
         let reals = n.checked_add(2).and_then(|m| m.checked_mul(n)?.checked_mul(n)?.checked_mul(8));
         if reals.is_none_or(|bytes| isize::try_from(bytes).is_err()) {
             return Err(Error::Overflow);
@@ -129,6 +132,7 @@ impl Brick {
 
     /// Elements from one row to the next.
     fn row(n: usize, space: Space) -> Result<usize> {
+        check_side(n)?;
         let row = (n / 2).checked_add(1).and_then(|modes| modes.checked_mul(2 / space.width()));
         let row = row.ok_or(Error::Overflow)?;
         row.checked_mul(n).map(|_| row).ok_or(Error::Overflow)
@@ -279,6 +283,7 @@ mod tests {
         assert_eq!(general(usize::MAX - 1, [0; 3], [1; 3], [1; 3]), Err(Error::Overflow));
         for space in [Space::Configuration, Space::Fourier] {
             assert_eq!(Brick::whole(usize::MAX - 1, space), Err(Error::Overflow));
+            assert_eq!(Brick::whole(usize::MAX, space), Err(Error::MeshSize), "odd before too large");
             assert_eq!(Brick::whole_padded(8, space, usize::MAX / 2), Err(Error::Overflow));
         }
         assert_eq!(Brick::transposed_slab(usize::MAX - 1, 0, 1), Err(Error::Overflow));
