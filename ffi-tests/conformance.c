@@ -38,6 +38,27 @@ static void make_bricks(fixpair_brick *bricks) {
     bricks[4] = general;
 }
 
+/* Is memory that was all CANARY_BYTE before still so between the elements of the brick? Spoils the elements. */
+static int gaps_untouched(void *data, size_t bytes, const fixpair_brick *brick, size_t size) {
+    const size_t *s = brick->stride;
+    const unsigned char *all = (const unsigned char *)data;
+    size_t a, b, c;
+    size *= brick->space == FIXPAIR_SPACE_FOURIER ? 2 : 1;
+    for (a = 0; a < brick->count[0]; a++) {
+        for (b = 0; b < brick->count[1]; b++) {
+            for (c = 0; c < brick->count[2]; c++) {
+                memset((char *)data + (a * s[0] + b * s[1] + c * s[2]) * size, CANARY_BYTE, size);
+            }
+        }
+    }
+    for (a = 0; a < bytes; a++) {
+        if (all[a] != CANARY_BYTE) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 static double *amplitude_table, *alpha_table;
 static size_t table_length;
 

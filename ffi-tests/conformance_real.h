@@ -87,11 +87,15 @@ static void X(whites)(const fixpair_exec *exec) {
     mean.nyquist = FIXPAIR_NYQUIST_FILLED;
     for (b = 0; b < BRICKS; b++) {
         modes = X(array_of)(&bricks[b], &length);
+        memset(modes, CANARY_BYTE, length * sizeof(REAL));
         MUST(X(fixpair_white_modes)(modes, length, &bricks[b], &normal, NULL, 0, exec));
         check_named("white_modes.", brick_names[b], SUFFIX, hash_brick(HASH_START, modes, &bricks[b], sizeof(REAL)));
         MUST(X(fixpair_white_modes)(modes, length, &bricks[b], &fixed, amplitude_table, table_length, exec));
         check_named("white_modes.coloured_", brick_names[b], SUFFIX,
                     hash_brick(HASH_START, modes, &bricks[b], sizeof(REAL)));
+        MUST(X(fixpair_impose)(modes, length, &bricks[b], &fixed, exec));
+        MUST(X(fixpair_scale_modes)(modes, length, &bricks[b], alpha_table, table_length, exec));
+        CHECK(gaps_untouched(modes, length * sizeof(REAL), &bricks[b], sizeof(REAL)));
         give_back(modes);
     }
     modes = X(array_of)(&bricks[0], &length);

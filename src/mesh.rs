@@ -32,6 +32,11 @@ impl Space {
     }
 }
 
+/// `MeshSize` if n is zero or odd.
+fn check_side(n: usize) -> Result<()> {
+    if n == 0 || !n.is_multiple_of(2) { Err(Error::MeshSize) } else { Ok(()) }
+}
+
 /// A rectangular part of a mesh in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Brick {
@@ -283,6 +288,7 @@ mod tests {
         assert_eq!(general(usize::MAX - 1, [0; 3], [1; 3], [1; 3]), Err(Error::Overflow));
         for space in [Space::Configuration, Space::Fourier] {
             assert_eq!(Brick::whole(usize::MAX - 1, space), Err(Error::Overflow));
+            assert_eq!(Brick::whole(usize::MAX, space), Err(Error::MeshSize), "odd before too large");
             assert_eq!(Brick::whole_padded(8, space, usize::MAX / 2), Err(Error::Overflow));
         }
         assert_eq!(Brick::transposed_slab(usize::MAX - 1, 0, 1), Err(Error::Overflow));
