@@ -3,15 +3,18 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 9] = [
+const SECTIONS: [(&str, &str); 12] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
-    ("fft", "Transform"),
+    ("fft", "Transform hook"),
+    ("built_in", "Built-in transform"),
     ("noise", "Random modes"),
     ("cosmology", "Cosmology"),
+    ("mode_table", "Cosmology on a mesh"),
     ("initial", "Initial conditions in one call"),
     ("stages", "Initial conditions stage by stage"),
+    ("particles", "Particles"),
     ("estimate", "Spectra"),
 ];
 

@@ -209,14 +209,6 @@ typedef struct fixpair_exec {
                           void *argument);
 } fixpair_exec;
 
-/* Bytes and alignment of a piece of memory that a kernel asks its caller for. */
-typedef struct fixpair_layout {
-  /* Bytes: a multiple of `align`, as aligned_alloc wants it. */
-  size_t size;
-  /* Alignment of its first byte: a power of two. */
-  size_t align;
-} fixpair_layout;
-
 /*
  * A three-dimensional real transform in double precision: the host's, or the built-in one after fixpair_fft_init_f64.
  *
@@ -269,6 +261,14 @@ typedef struct fixpair_fft_f32 {
   /* Reals in the array that is transformed: at least what either brick needs. */
   size_t length;
 } fixpair_fft_f32;
+
+/* Bytes and alignment of a piece of memory that a kernel asks its caller for. */
+typedef struct fixpair_layout {
+  /* Bytes: a multiple of `align`, as aligned_alloc wants it. */
+  size_t size;
+  /* Alignment of its first byte: a power of two. */
+  size_t align;
+} fixpair_layout;
 
 /*
  * One realisation of the Gaussian field. Same seed, same phases and same moduli over their r.m.s., whatever the cosmology,
@@ -535,8 +535,30 @@ void fixpair_threads_destroy(struct fixpair_threads *threads);
 #endif
 
 /*
- * Transform
- * =========
+ * Transform hook
+ * ==============
+ */
+
+/*
+ * Tries a hook: sign, normalisation, order of the axes, half space and both directions, with plane waves whose transform is known. On
+ * several processes all call it together, each with its bricks.
+ *
+ * In: fft   the hook to try
+ *     data  len = fft->length reals, overwritten
+ * Returns: 0, FIXPAIR_ERROR_HOOK if the hook fails or breaks its contract, FIXPAIR_ERROR_NULL, _VERSION, _LENGTH, or why a brick is
+ *          refused
+ * Cost: a few transforms
+ */
+fixpair_status_t fixpair_fft_self_test_f64(const struct fixpair_fft_f64 *fft,
+                                           double *data,
+                                           size_t len);
+
+/* fixpair_fft_self_test_f64 for single precision. */
+fixpair_status_t fixpair_fft_self_test_f32(const struct fixpair_fft_f32 *fft, float *data, size_t len);
+
+/*
+ * Built-in transform
+ * ==================
  */
 
 /* Padding of planes, in modes, with which the built-in transform is fastest: 0 unless planes would begin a multiple of 4 KiB apart. */
@@ -618,23 +640,6 @@ fixpair_status_t fixpair_fft_init_f32(struct fixpair_fft_f32 *fft,
                                       void *scratch,
                                       size_t scratch_len,
                                       const struct fixpair_exec *exec);
-
-/*
- * Tries a hook: sign, normalisation, order of the axes, half space and both directions, with plane waves whose transform is known. On
- * several processes all call it together, each with its bricks.
- *
- * In: fft   the hook to try
- *     data  len = fft->length reals, overwritten
- * Returns: 0, FIXPAIR_ERROR_HOOK if the hook fails or breaks its contract, FIXPAIR_ERROR_NULL, _VERSION, _LENGTH, or why a brick is
- *          refused
- * Cost: a few transforms
- */
-fixpair_status_t fixpair_fft_self_test_f64(const struct fixpair_fft_f64 *fft,
-                                           double *data,
-                                           size_t len);
-
-/* fixpair_fft_self_test_f64 for single precision. */
-fixpair_status_t fixpair_fft_self_test_f32(const struct fixpair_fft_f32 *fft, float *data, size_t len);
 
 /*
  * Random modes
@@ -865,6 +870,11 @@ fixpair_status_t fixpair_alpha(double *alpha,
                                const struct fixpair_linear *linear,
                                double redshift,
                                int32_t convention);
+
+/*
+ * Cosmology on a mesh
+ * ===================
+ */
 
 /*
  * Entries of a table by |n|^2 for a mesh of side n: 3 (n/2)^2 + 1.
@@ -1172,6 +1182,11 @@ fixpair_status_t fixpair_displacement_f32(float *psi,
                                           double scale,
                                           const struct fixpair_fft_f32 *fft,
                                           const struct fixpair_exec *exec);
+
+/*
+ * Particles
+ * =========
+ */
 
 /*
  * Moves the particles of a brick's cells along one axis: x = q + psi1 + psi2, wrapped into [0, L); v = c1 psi1 + c2 psi2.

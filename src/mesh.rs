@@ -244,11 +244,6 @@ impl Brick {
     }
 }
 
-/// `MeshSize` if a side is zero or odd.
-fn check_side(n: usize) -> Result<()> {
-    if n == 0 || !n.is_multiple_of(2) { Err(Error::MeshSize) } else { Ok(()) }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

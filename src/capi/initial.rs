@@ -7,11 +7,11 @@ use super::cosmology::{FIXPAIR_CONVENTION_CMB, fixpair_cosmology, fixpair_linear
 use super::exec::{HostExec, fixpair_exec};
 use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
 use super::noise::fixpair_realisation;
+use super::particles::{Triple, components, fixpair_components_f32, fixpair_components_f64};
 use super::status::{code, fixpair_status_t};
 use crate::cosmology::{Convention, Cosmology};
 use crate::fft::Fft3;
 use crate::initial::conditions::{InitialConditions, Order, initial_conditions, initial_conditions_scratch};
-use crate::initial::particles::Components;
 use crate::initial::png::Local;
 use crate::real::Real;
 use crate::scratch::Layout;
@@ -46,84 +46,6 @@ pub struct fixpair_conditions {
     pub convention: i32,
     /// FIXPAIR_ORDER_FIRST or _SECOND.
     pub order: i32,
-}
-
-/// Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
-/// of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
-/// sizeof(struct) / sizeof(f64).
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct fixpair_components_f64 {
-    /// First x.
-    pub x: *mut f64,
-    /// First y.
-    pub y: *mut f64,
-    /// First z.
-    pub z: *mut f64,
-    /// From one particle to the next, in elements.
-    pub stride: usize,
-    /// Particles.
-    pub length: usize,
-}
-
-impl Triple for fixpair_components_f64 {
-    type Real = f64;
-
-    fn parts(&self) -> ([*mut f64; 3], usize, usize) {
-        ([self.x, self.y, self.z], self.stride, self.length)
-    }
-}
-
-/// Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
-/// of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
-/// sizeof(struct) / sizeof(f32).
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct fixpair_components_f32 {
-    /// First x.
-    pub x: *mut f32,
-    /// First y.
-    pub y: *mut f32,
-    /// First z.
-    pub z: *mut f32,
-    /// From one particle to the next, in elements.
-    pub stride: usize,
-    /// Particles.
-    pub length: usize,
-}
-
-impl Triple for fixpair_components_f32 {
-    type Real = f32;
-
-    fn parts(&self) -> ([*mut f32; 3], usize, usize) {
-        ([self.x, self.y, self.z], self.stride, self.length)
-    }
-}
-
-/// The two component structs, as one.
-pub(super) trait Triple: Copy {
-    type Real: Real;
-
-    /// Starts, stride, particles.
-    fn parts(&self) -> ([*mut Self::Real; 3], usize, usize);
-}
-
-/// # Safety
-/// `pointer` is null or points to components whose elements nobody else touches.
-pub(super) unsafe fn components<'a, C: Triple>(
-    border: &mut Border,
-    pointer: *const C,
-) -> Result<Components<'a, C::Real>> {
-    // SAFETY: the caller's promise.
-    let (start, stride, length) = unsafe { border.read_one(pointer) }?.parts();
-    if stride == 0 {
-        return Err(Error::Range);
-    }
-    for first in start {
-        border.strided(first, stride, length)?;
-    }
-    // SAFETY: the border has checked that elements are aligned and apart; the rest is the caller's promise.
-    Ok(unsafe { Components::strided(start, stride, length) })
 }
 
 /// # Safety

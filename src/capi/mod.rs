@@ -7,13 +7,16 @@
     reason = "the text is that of the header"
 )]
 
+pub mod built_in;
 pub mod cosmology;
 pub mod estimate;
 pub mod exec;
 pub mod fft;
 pub mod initial;
 pub mod mesh;
+pub mod mode_table;
 pub mod noise;
+pub mod particles;
 pub mod stages;
 pub mod status;
 

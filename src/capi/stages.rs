@@ -5,10 +5,8 @@ use core::ffi::c_void;
 use super::border::Border;
 use super::exec::{HostExec, fixpair_exec};
 use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
-use super::initial::{Triple, components, fixpair_components_f32, fixpair_components_f64};
 use super::mesh::fixpair_brick;
 use super::status::{code, fixpair_status_t};
-use crate::initial::particles::{self, Step};
 use crate::initial::png::{Local, add_local, add_local_scratch};
 use crate::initial::{lpt, modes};
 use crate::real::Real;
@@ -443,120 +441,4 @@ unsafe fn psi_component<H: Hook>(
         let exec = HostExec::new(exec)?;
         lpt::displacement(psi, source, &brick, axis, scale, &mut fft, &exec)
     }
-}
-
-/// Moves the particles of a brick's cells along one axis: x = q + psi1 + psi2, wrapped into [0, L); v = c1 psi1 + c2 psi2.
-///
-/// Out: position  component `axis` of one particle a cell, numbered with z fastest whatever the strides of the brick
-///      velocity  the same
-/// In:  psi1      psi_len reals on the brick
-///      psi2      psi_len reals, or NULL at first order
-///      brick     of configuration space
-///      axis      0, 1, 2
-///      box_size  L
-///      c1, c2    velocity over displacement: a H f1 and a H f2, H = 100 E(a) km/s per Mpc/h
-///      exec      or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _BRICK, _HOOK; FIXPAIR_ERROR_NOT_FINITE for box_size, c1 and c2, or
-///          for displacements that are NaN or infinite, after which position and velocity are undefined
-///
-/// # Safety
-/// Pointers are null or point to as many values as stated; the hooks keep their contracts.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fixpair_displace_f64(
-    position: *const fixpair_components_f64,
-    velocity: *const fixpair_components_f64,
-    psi1: *const f64,
-    psi2: *const f64,
-    psi_len: usize,
-    brick: *const fixpair_brick,
-    axis: usize,
-    box_size: f64,
-    c1: f64,
-    c2: f64,
-    exec: *const fixpair_exec,
-) -> fixpair_status_t {
-    // SAFETY: the caller's promise.
-    code(unsafe {
-        move_particles(position, velocity, psi1, psi2, psi_len, brick, axis, box_size, c1, c2, exec)
-    })
-}
-
-/// fixpair_displace_f64 in single precision.
-///
-/// # Safety
-/// Pointers are null or point to as many values as stated; the hooks keep their contracts.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fixpair_displace_f32(
-    position: *const fixpair_components_f32,
-    velocity: *const fixpair_components_f32,
-    psi1: *const f32,
-    psi2: *const f32,
-    psi_len: usize,
-    brick: *const fixpair_brick,
-    axis: usize,
-    box_size: f64,
-    c1: f64,
-    c2: f64,
-    exec: *const fixpair_exec,
-) -> fixpair_status_t {
-    // SAFETY: the caller's promise.
-    code(unsafe {
-        move_particles(position, velocity, psi1, psi2, psi_len, brick, axis, box_size, c1, c2, exec)
-    })
-}
-
-unsafe fn move_particles<C: Triple>(
-    position: *const C,
-    velocity: *const C,
-    psi1: *const C::Real,
-    psi2: *const C::Real,
-    psi_len: usize,
-    brick: *const fixpair_brick,
-    axis: usize,
-    box_size: f64,
-    c1: f64,
-    c2: f64,
-    exec: *const fixpair_exec,
-) -> Result<()> {
-    let mut border = Border::new();
-    // SAFETY: the caller's promise.
-    unsafe {
-        let mut position = components(&mut border, position)?;
-        let mut velocity = components(&mut border, velocity)?;
-        let psi1 = border.read(psi1, psi_len)?;
-        let psi2 = border.read_optional(psi2, psi_len)?;
-        let brick = border.read_one(brick)?.check()?;
-        let step = Step { box_size, first_velocity: c1, second_velocity: c2 };
-        let exec = HostExec::new(exec)?;
-        particles::displace(&mut position, &mut velocity, psi1, psi2, &brick, axis, &step, &exec)
-    }
-}
-
-/// Ids of the particles of a brick: ((x n) + y) n + z + first_id, the same in every decomposition.
-///
-/// Out: ids       len = cells of the brick, numbered with z fastest
-/// In:  brick     of configuration space
-///      first_id  0, or 1 as Gadget files have it
-///      exec      or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERFLOW, _HOOK, or why the brick is refused
-///
-/// # Safety
-/// Pointers are null or point to as many values as stated.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fixpair_particle_ids(
-    ids: *mut u64,
-    len: usize,
-    brick: *const fixpair_brick,
-    first_id: u64,
-    exec: *const fixpair_exec,
-) -> fixpair_status_t {
-    code((|| {
-        let mut border = Border::new();
-        // SAFETY: the caller's promise.
-        unsafe {
-            let ids = border.write(ids, len)?;
-            let brick = border.read_one(brick)?.check()?;
-            particles::particle_ids(ids, &brick, first_id, &HostExec::new(exec)?)
-        }
-    })())
 }
