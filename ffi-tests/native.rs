@@ -39,9 +39,13 @@ pub(crate) fn shared_library() -> PathBuf {
     LIBRARIES.join(format!("{prefix}fixpair{suffix}"))
 }
 
-/// A program that the environment may name: CC, CXX, PYTHON.
-pub(crate) fn tool(variable: &str, default: &str) -> String {
-    std::env::var(variable).ok().filter(|name| !name.is_empty()).unwrap_or_else(|| default.into())
+/// A program that the environment may name, with options: CC, CXX, PYTHON.
+pub(crate) fn tool(variable: &str, default: &str) -> Command {
+    let named = std::env::var(variable).unwrap_or_default();
+    let mut words = named.split_whitespace();
+    let mut command = Command::new(words.next().unwrap_or(default));
+    command.args(words);
+    command
 }
 
 /// Runs a command; its output is the message if it fails.
@@ -80,7 +84,7 @@ pub(crate) fn compiler(language: Language, source: &str) -> Command {
         Language::C => ("CC", "cc", "-std=c99"),
         Language::Cpp => ("CXX", "c++", "-std=c++11"),
     };
-    let mut command = Command::new(tool(variable, default));
+    let mut command = tool(variable, default);
     // Products and sums of the programs are rounded as Rust rounds them.
     command.args([standard, "-pedantic", "-Wall", "-Wextra", "-Werror", "-O1", "-g", "-ffp-contract=off"]);
     command.arg("-I").arg(root().join("include")).arg(root().join("ffi-tests").join(source));

@@ -27,7 +27,7 @@ fn cpp_gets_the_bits_of_rust() {
 
 #[test]
 fn python_gets_the_bits_of_rust() {
-    let mut python = Command::new(tool("PYTHON", "python3"));
+    let mut python = tool("PYTHON", "python3");
     python.arg("-B").arg(root().join("ffi-tests/test_ctypes.py")).arg(shared_library());
     run(python.arg(&*VECTORS).arg(root().join("include/fixpair.h")));
 }
@@ -61,7 +61,7 @@ fn declared() -> BTreeSet<String> {
 fn the_c_programs_call_every_function() {
     let declared = declared();
     assert!(declared.len() > 50, "the header was read: {declared:?}");
-    // Neither refuses anything: they have no argument, or any will do.
+    // These refuse nothing: any argument will do.
     let never = [
         "status_message",
         "version",
@@ -86,7 +86,7 @@ fn sanitizers_find_nothing() {
     let options = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-pthread"];
     let empty = folder().join("empty.c");
     std::fs::write(&empty, "int main(void) { return 0; }\n").expect("the target folder can be written");
-    let mut trial = Command::new(tool("CC", "cc"));
+    let mut trial = tool("CC", "cc");
     trial.args(options).arg(&empty).args(SYSTEM).arg("-o").arg(folder().join("empty"));
     if !attempt(&mut trial).status.success()
         || !attempt(&mut Command::new(folder().join("empty"))).status.success()
