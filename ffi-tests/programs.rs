@@ -37,6 +37,24 @@ fn no_parameter_reaches_a_panic() {
     run(&mut Command::new(program(Language::C, "fuzz.c", "fuzz", &[])));
 }
 
+#[test]
+fn the_c_of_the_readme_compiles() {
+    let readme = std::fs::read_to_string(root().join("README.md")).expect("README.md");
+    let code = readme.split("```c\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a block of C");
+    let source = format!(
+        "#include <stdio.h>\n#include <stdlib.h>\n#include <fixpair.h>\n\
+         void host(void *my_particles, size_t n, uint64_t seed, const double *k, const double *power, size_t rows, \
+         fixpair_fft_f32 fft);\n\
+         void host(void *my_particles, size_t n, uint64_t seed, const double *k, const double *power, size_t rows, \
+         fixpair_fft_f32 fft)\n{{\n{code}}}\n"
+    );
+    let file = folder().join("readme.c");
+    std::fs::write(&file, source).expect("the target folder can be written");
+    let mut compile = tool("CC", "cc");
+    compile.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only", "-I"]);
+    run(compile.arg(root().join("include")).arg(file));
+}
+
 /// Undefined symbols of an object or archive, without the underscore that some platforms put before them.
 fn undefined(file: &Path) -> BTreeSet<String> {
     let output = run(Command::new("nm").arg("-u").arg(file));

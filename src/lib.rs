@@ -40,3 +40,8 @@ mod freestanding;
 
 #[cfg(test)]
 mod reference;
+
+/// Runs the Rust of README.md.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
