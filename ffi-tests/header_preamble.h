@@ -8,18 +8,21 @@
  *
  * Rules that hold for every function:
  *
- *  1. Memory is yours. Nothing is allocated, kept or freed (fixpair_threads_create alone starts threads and takes memory for them).
+ *  1. Memory is yours. Nothing is allocated or freed (fixpair_threads_create alone starts threads and takes memory for them), and nothing
+ *     is kept but by a hook of fixpair_fft_init, which goes on using its tables and scratch.
  *     Functions that need scratch have a twin ..._scratch, which says how many bytes, aligned how; contents do not
  *     matter before and mean nothing after. Scratch and tables are aligned to 64 bytes (aligned_alloc, posix_memalign).
  *  2. There are no globals. Calls on different memory may run at the same time.
- *  3. Every function returns a status: 0 if it did what it says, else a negative FIXPAIR_ERROR_ code, with all outputs
- *     untouched unless its block says otherwise. fixpair_status_message says what is wrong.
+ *  3. A function that can fail returns a status: 0 if it did what it says, else a negative FIXPAIR_ERROR_ code, with all outputs
+ *     untouched unless its block says otherwise. fixpair_status_message says what is wrong. Parameters and tables are checked
+ *     for NaN; modes are not, unless the block says so: NaN in, NaN out. Particles and power spectra of them are refused.
  *  4. Unless stated, no pointer may be NULL, pointers are aligned to their element, and memory that is written overlaps nothing else.
  *     A length follows its array. It counts elements, for scratch bytes. An array of length 0 may be NULL.
  *  5. Arguments come in this order: outputs, inputs, scratch, exec. Enumerations travel as int32_t. A struct that may grow
  *     begins with its size: fill it with its _init function, or by hand where it has none.
- *  6. The same seed is the same universe, bit for bit: on any number of threads, in any decomposition, in both precisions
- *     (single is rounded double), for every mode that two meshes share.
+ *  6. The same seed is the same universe. Random modes agree bit for bit: on any number of threads and any machine, in any decomposition,
+ *     in both precisions (single is rounded double), for every mode that two meshes share. Fields that went through a transform
+ *     agree bit for bit on any number of threads, and between transforms, processors and precisions to rounding.
  *  7. Transform and threads are hooks: pass your own FFT (fixpair_fft_f64) and your own loop (fixpair_exec), or the built-in ones.
  *
  * f32 and f64 twins differ in nothing but their element.

@@ -8,18 +8,21 @@
  *
  * Rules that hold for every function:
  *
- *  1. Memory is yours. Nothing is allocated, kept or freed (fixpair_threads_create alone starts threads and takes memory for them).
+ *  1. Memory is yours. Nothing is allocated or freed (fixpair_threads_create alone starts threads and takes memory for them), and nothing
+ *     is kept but by a hook of fixpair_fft_init, which goes on using its tables and scratch.
  *     Functions that need scratch have a twin ..._scratch, which says how many bytes, aligned how; contents do not
  *     matter before and mean nothing after. Scratch and tables are aligned to 64 bytes (aligned_alloc, posix_memalign).
  *  2. There are no globals. Calls on different memory may run at the same time.
- *  3. Every function returns a status: 0 if it did what it says, else a negative FIXPAIR_ERROR_ code, with all outputs
- *     untouched unless its block says otherwise. fixpair_status_message says what is wrong.
+ *  3. A function that can fail returns a status: 0 if it did what it says, else a negative FIXPAIR_ERROR_ code, with all outputs
+ *     untouched unless its block says otherwise. fixpair_status_message says what is wrong. Parameters and tables are checked
+ *     for NaN; modes are not, unless the block says so: NaN in, NaN out. Particles and power spectra of them are refused.
  *  4. Unless stated, no pointer may be NULL, pointers are aligned to their element, and memory that is written overlaps nothing else.
  *     A length follows its array. It counts elements, for scratch bytes. An array of length 0 may be NULL.
  *  5. Arguments come in this order: outputs, inputs, scratch, exec. Enumerations travel as int32_t. A struct that may grow
  *     begins with its size: fill it with its _init function, or by hand where it has none.
- *  6. The same seed is the same universe, bit for bit: on any number of threads, in any decomposition, in both precisions
- *     (single is rounded double), for every mode that two meshes share.
+ *  6. The same seed is the same universe. Random modes agree bit for bit: on any number of threads and any machine, in any decomposition,
+ *     in both precisions (single is rounded double), for every mode that two meshes share. Fields that went through a transform
+ *     agree bit for bit on any number of threads, and between transforms, processors and precisions to rounding.
  *  7. Transform and threads are hooks: pass your own FFT (fixpair_fft_f64) and your own loop (fixpair_exec), or the built-in ones.
  *
  * f32 and f64 twins differ in nothing but their element.
@@ -232,7 +235,10 @@ typedef struct fixpair_fft_f64 {
   int32_t (*forward)(void *context, double *data);
   /* Modes to cells, un-normalised. */
   int32_t (*inverse)(void *context, double *data);
-  /* Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all. */
+  /*
+   * Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all. Asked
+   * for by g_nl alone.
+   */
   int32_t (*sum)(void *context, double *values, size_t count);
   /* Where the cells lie. */
   struct fixpair_brick configuration;
@@ -252,7 +258,10 @@ typedef struct fixpair_fft_f32 {
   int32_t (*forward)(void *context, float *data);
   /* Modes to cells, un-normalised. */
   int32_t (*inverse)(void *context, float *data);
-  /* Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all. */
+  /*
+   * Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all. Asked
+   * for by g_nl alone.
+   */
   int32_t (*sum)(void *context, double *values, size_t count);
   /* Where the cells lie. */
   struct fixpair_brick configuration;
@@ -360,7 +369,7 @@ typedef struct fixpair_linear {
 typedef struct fixpair_conditions {
   /* sizeof(fixpair_conditions). */
   size_t struct_size;
-  /* Seed, amplitudes, phase. */
+  /* Seed, amplitudes, phase. (Nyquist modes are zero whatever it says: displacements have none.) */
   struct fixpair_realisation realisation;
   /* Background of the simulation that will run. */
   struct fixpair_cosmology cosmology;
@@ -383,7 +392,8 @@ typedef struct fixpair_conditions {
 /*
  * Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
  * of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
- * sizeof(struct) / sizeof(f64).
+ * sizeof(struct) / sizeof(double). A stride of 0 is refused (FIXPAIR_ERROR_RANGE), and so are arrays that share memory with different
+ * strides (FIXPAIR_ERROR_OVERLAP).
  */
 typedef struct fixpair_components_f64 {
   /* First x. */
@@ -401,7 +411,8 @@ typedef struct fixpair_components_f64 {
 /*
  * Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
  * of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
- * sizeof(struct) / sizeof(f32).
+ * sizeof(struct) / sizeof(float). A stride of 0 is refused (FIXPAIR_ERROR_RANGE), and so are arrays that share memory with different
+ * strides (FIXPAIR_ERROR_OVERLAP).
  */
 typedef struct fixpair_components_f32 {
   /* First x. */
@@ -561,7 +572,7 @@ fixpair_status_t fixpair_fft_self_test_f32(const struct fixpair_fft_f32 *fft, fl
  * ==================
  */
 
-/* Padding of planes, in modes, with which the built-in transform is fastest: 0 unless planes would begin a multiple of 4 KiB apart. */
+/* Padding of planes, in modes, with which the built-in transform is fastest: 0 unless planes would begin a multiple of 1 KiB apart. */
 size_t fixpair_fft_padding_f64(size_t n);
 
 /* fixpair_fft_padding_f64 for single precision. */
@@ -657,7 +668,7 @@ fixpair_status_t fixpair_realisation_init(struct fixpair_realisation *realisatio
 
 /*
  * One block of Philox4x32-10 (Salmon et al. 2011), the generator of the native scheme, for draws of the host's own. The library
- * uses counters (i, j, l, tag) with signed mode numbers and a tag of its own, and the seed's low and high half as key.
+ * uses counters (i, l, j, 0x77686974) for the mode (i, j, l), signed, and the seed's low and high half as key: choose another last word.
  *
  * Out: output   4 random words
  * In:  counter  4 words
@@ -681,7 +692,7 @@ fixpair_status_t fixpair_philox4x32_10(uint32_t *output,
  *      exec           or NULL
  * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, _NOT_FINITE for a factor that is NaN,
  *          infinite, or within 16 times the largest number of the precision, or why the brick is refused
- * Cost: about 17 ns a mode and core with AVX2; no scratch
+ * Cost: about 11 ns a mode and core with AVX2; no scratch
  */
 fixpair_status_t fixpair_white_modes_f64(double *modes,
                                          size_t len,
@@ -732,7 +743,8 @@ fixpair_status_t fixpair_impose_f32(float *modes,
  * In:     fft          the transform
  *         realisation
  *         exec         or NULL
- * Returns: as fixpair_impose_f64; after FIXPAIR_ERROR_HOOK, or FIXPAIR_ERROR_NOT_FINITE from an overflow, data is undefined
+ * Returns: as fixpair_impose_f64; after FIXPAIR_ERROR_HOOK, or FIXPAIR_ERROR_NOT_FINITE from an overflow, data is undefined. On several processes, see that no
+ *          cell anywhere is NaN or infinite: a process that finds one does not take part in the transform
  */
 fixpair_status_t fixpair_modes_from_field_f64(double *data,
                                               size_t len,
@@ -774,10 +786,11 @@ fixpair_status_t fixpair_radiation_density(double *omega_r, double t_cmb, double
  * E(a) = H(a)/H0; H0 is 100 km/s per Mpc/h.
  *
  * Out: e          len values
- * In:  a          len scale factors, 1e-8 to 10
+ * In:  a          len scale factors, 1e-10 to 10
  *      cosmology
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _VERSION, FIXPAIR_ERROR_NOT_FINITE and FIXPAIR_ERROR_RANGE for
  *          scale factors or parameters
+ * Cost: 30 microseconds a scale factor, most of it to check the cosmology
  */
 fixpair_status_t fixpair_expansion(double *e,
                                    const double *a,
@@ -792,7 +805,7 @@ fixpair_status_t fixpair_expansion(double *e,
  * In:  a          len scale factors, 1e-5 to 10, in any order
  *      cosmology
  * Returns: as fixpair_expansion
- * Cost: 0.1 ms and 0.5 microseconds a scale factor
+ * Cost: 0.4 ms and 2 microseconds a scale factor
  */
 fixpair_status_t fixpair_growth_factors(struct fixpair_growth *growth,
                                         const double *a,
@@ -939,9 +952,10 @@ fixpair_status_t fixpair_conditions_init(struct fixpair_conditions *conditions,
                                          uint64_t seed);
 
 /*
- * Scratch of fixpair_initial_conditions_f64: at second order one mesh of fft->length reals and three of the longer of fft->length and
- * fine->length (4 reals a cell without `fine`); at first order one and one. And 16 bytes for each |n|^2 up to 3 (n/2)^2 and 8 for
- * each plane, each array rounded up to 64 bytes.
+ * Scratch of fixpair_initial_conditions_f64: at second order one mesh of fft->length reals and two of fine->length, or four of
+ * fft->length without `fine`; at first order one of each, or two of fft->length. And 16 bytes for each |n|^2 up to 3 (n/2)^2 and
+ * 8 for each plane, each array rounded up to 64 bytes. Second order with a `fine` of 3/2 the side: 63 bytes a cell (f32: 32); without
+ * it 33 (17).
  *
  * Out: scratch
  * In:  conditions  only the order is read
@@ -971,13 +985,14 @@ fixpair_status_t fixpair_initial_conditions_scratch_f32(struct fixpair_layout *s
  * In:  conditions
  *      fft         the transform; its bricks decide which part of the mesh and so which particles this process makes
  *      fine        a transform of side 3n/2 or more (2n with g_nl), on which products are free of aliasing; NULL to let them alias.
- *                  On more than one process it must hold, locally, the modes that `fft` holds
+ *                  On more than one process, each must hold the same modes of both meshes below n/2: the slabs that FFTW-MPI deals out
+ *                  for two sides do not
  *      scratch     scratch_len bytes, see fixpair_initial_conditions_scratch_f64
  *      exec        or NULL
- * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _TABLE, _SCRATCH, _CHOICE, _VERSION, _BRICK for a
- *          `fine` that is too small; after FIXPAIR_ERROR_HOOK, or FIXPAIR_ERROR_NOT_FINITE from fields that overflow, position and
- *          velocity are undefined
- * Cost: at second order 13 transforms (2 more with f_nl or g_nl)
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _TABLE, _SCRATCH, _CHOICE, _VERSION, _CONVERGENCE, _OVERFLOW,
+ *          _MESH_SIZE, _BRICK for a `fine` that is too small; after FIXPAIR_ERROR_HOOK, or FIXPAIR_ERROR_NOT_FINITE from fields that overflow, position and
+ *          velocity are undefined; on several processes NOT_FINITE may be the answer of some only
+ * Cost: at second order 13 transforms of fft, or 6 of it and 8 of fine; 2 more with f_nl or g_nl
  */
 fixpair_status_t fixpair_initial_conditions_f64(const struct fixpair_components_f64 *position,
                                                 const struct fixpair_components_f64 *velocity,
@@ -1010,7 +1025,7 @@ fixpair_status_t fixpair_initial_conditions_f32(const struct fixpair_components_
  * In:     brick  of Fourier space
  *         table  table_len >= fixpair_mode_table_length(n) factors
  *         exec   or NULL
- * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _HOOK, or why the brick is refused
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _HOOK, _NOT_FINITE for such a factor, or why the brick is refused
  */
 fixpair_status_t fixpair_scale_modes_f64(double *modes,
                                          size_t len,

@@ -98,7 +98,7 @@ impl Brick {
     }
 
     /// The whole mesh with `padding` unused modes (twice as many reals) after each x plane. Where n is a power of
-    /// two, planes that are not a multiple of 4 KiB apart spare the transform cache conflicts.
+    /// two, planes that are not a multiple of 1 KiB apart spare the transform cache conflicts.
     ///
     /// # Errors
     /// As [`Brick::general`].

@@ -12,7 +12,7 @@ use crate::real::Real;
 use crate::scratch::Layout;
 use crate::status::{Error, Result};
 
-/// Padding of planes, in modes, with which the built-in transform is fastest: 0 unless planes would begin a multiple of 4 KiB apart.
+/// Padding of planes, in modes, with which the built-in transform is fastest: 0 unless planes would begin a multiple of 1 KiB apart.
 #[unsafe(no_mangle)]
 pub extern "C" fn fixpair_fft_padding_f64(n: usize) -> usize {
     recommended_padding::<f64>(n)
@@ -211,7 +211,7 @@ unsafe fn init<H: Hook>(
         if scratch.len() < workspace_layout::<H::Real>(n)?.size {
             return Err(Error::Scratch);
         }
-        let exec = match HostExec::new(exec)? {
+        let exec = match HostExec::new(&mut border, exec)? {
             HostExec::Serial => fixpair_exec { context: core::ptr::null_mut(), parallel_for: None },
             HostExec::Hook(hook) => hook,
         };

@@ -204,10 +204,11 @@ pub unsafe extern "C" fn fixpair_radiation_density(
 /// E(a) = H(a)/H0; H0 is 100 km/s per Mpc/h.
 ///
 /// Out: e          len values
-/// In:  a          len scale factors, 1e-8 to 10
+/// In:  a          len scale factors, 1e-10 to 10
 ///      cosmology
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _VERSION, FIXPAIR_ERROR_NOT_FINITE and FIXPAIR_ERROR_RANGE for
 ///          scale factors or parameters
+/// Cost: 30 microseconds a scale factor, most of it to check the cosmology
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -246,7 +247,7 @@ fn map(out: &mut [f64], input: &[f64], f: impl Fn(f64) -> Result<f64>) -> Result
 /// In:  a          len scale factors, 1e-5 to 10, in any order
 ///      cosmology
 /// Returns: as fixpair_expansion
-/// Cost: 0.1 ms and 0.5 microseconds a scale factor
+/// Cost: 0.4 ms and 2 microseconds a scale factor
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.

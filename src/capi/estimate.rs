@@ -117,6 +117,6 @@ unsafe fn sums<T: Real>(
         let g = border.read_optional(g, len)?;
         let brick = border.read_one(brick)?.check()?;
         let scratch = border.scratch(scratch, scratch_len)?;
-        power_sums(bins, edges, f, g, &brick, scratch, &HostExec::new(exec)?)
+        power_sums(bins, edges, f, g, &brick, scratch, &HostExec::new(&mut border, exec)?)
     }
 }

@@ -50,12 +50,12 @@ unsafe impl Sync for HostExec {}
 impl HostExec {
     /// # Safety
     /// `exec` is null or points to a hook that keeps its contract.
-    pub(super) unsafe fn new(exec: *const fixpair_exec) -> Result<Self> {
+    pub(super) unsafe fn new(border: &mut Border, exec: *const fixpair_exec) -> Result<Self> {
         if exec.is_null() {
             return Ok(Self::Serial);
         }
         // SAFETY: the caller's promise.
-        let hook = *unsafe { Border::new().read_one(exec) }?;
+        let hook = *unsafe { border.read_one(exec) }?;
         if hook.parallel_for.is_none() { Err(Error::Null) } else { Ok(Self::Hook(hook)) }
     }
 }
@@ -71,7 +71,7 @@ unsafe extern "C" fn run_chunk(argument: *mut c_void, index: usize) {
     let chunks = unsafe { &*argument.cast::<Chunks<'_>>() };
     if index < chunks.count {
         (chunks.body)(index);
-        chunks.done.fetch_add(1, Ordering::Relaxed);
+        chunks.done.fetch_add(1, Ordering::Release);
     }
 }
 
@@ -103,7 +103,7 @@ pub unsafe extern "C" fn fixpair_exec_self_test(exec: *const fixpair_exec) -> fi
     const LONGEST: usize = 1000;
     code((|| {
         // SAFETY: the caller's promise.
-        let exec = unsafe { HostExec::new(exec) }?;
+        let exec = unsafe { HostExec::new(&mut Border::new(), exec) }?;
         for count in [0, 1, 2, 3, 64, LONGEST] {
             let calls = [const { AtomicUsize::new(0) }; LONGEST];
             exec.parallel_for(count, &|i| {

@@ -33,7 +33,8 @@ pub struct fixpair_fft_f64 {
     pub forward: Option<unsafe extern "C" fn(context: *mut c_void, data: *mut f64) -> i32>,
     /// Modes to cells, un-normalised.
     pub inverse: Option<unsafe extern "C" fn(context: *mut c_void, data: *mut f64) -> i32>,
-    /// Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all.
+    /// Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all. Asked
+    /// for by g_nl alone.
     pub sum: Option<unsafe extern "C" fn(context: *mut c_void, values: *mut f64, count: usize) -> i32>,
     /// Where the cells lie.
     pub configuration: fixpair_brick,
@@ -55,7 +56,8 @@ pub struct fixpair_fft_f32 {
     pub forward: Option<unsafe extern "C" fn(context: *mut c_void, data: *mut f32) -> i32>,
     /// Modes to cells, un-normalised.
     pub inverse: Option<unsafe extern "C" fn(context: *mut c_void, data: *mut f32) -> i32>,
-    /// Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all.
+    /// Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all. Asked
+    /// for by g_nl alone.
     pub sum: Option<unsafe extern "C" fn(context: *mut c_void, values: *mut f64, count: usize) -> i32>,
     /// Where the cells lie.
     pub configuration: fixpair_brick,
@@ -178,6 +180,7 @@ impl<T: Real> Fft3<T> for HostFft<T> {
 
     fn all_sum(&mut self, values: &mut [f64]) -> Result<()> {
         match self.sum {
+            Some(_) if values.is_empty() => Ok(()),
             // SAFETY: the hook's contract: it touches `count` values.
             Some(sum) => match unsafe { sum(self.context, values.as_mut_ptr(), values.len()) } {
                 0 => Ok(()),

@@ -28,7 +28,7 @@ pub const FIXPAIR_ORDER_SECOND: i32 = 2;
 pub struct fixpair_conditions {
     /// sizeof(fixpair_conditions).
     pub struct_size: usize,
-    /// Seed, amplitudes, phase.
+    /// Seed, amplitudes, phase. (Nyquist modes are zero whatever it says: displacements have none.)
     pub realisation: fixpair_realisation,
     /// Background of the simulation that will run.
     pub cosmology: fixpair_cosmology,
@@ -117,9 +117,10 @@ impl fixpair_conditions {
     }
 }
 
-/// Scratch of fixpair_initial_conditions_f64: at second order one mesh of fft->length reals and three of the longer of fft->length and
-/// fine->length (4 reals a cell without `fine`); at first order one and one. And 16 bytes for each |n|^2 up to 3 (n/2)^2 and 8 for
-/// each plane, each array rounded up to 64 bytes.
+/// Scratch of fixpair_initial_conditions_f64: at second order one mesh of fft->length reals and two of fine->length, or four of
+/// fft->length without `fine`; at first order one of each, or two of fft->length. And 16 bytes for each |n|^2 up to 3 (n/2)^2 and
+/// 8 for each plane, each array rounded up to 64 bytes. Second order with a `fine` of 3/2 the side: 63 bytes a cell (f32: 32); without
+/// it 33 (17).
 ///
 /// Out: scratch
 /// In:  conditions  only the order is read
@@ -187,13 +188,14 @@ unsafe fn conditions_scratch<H: Hook>(
 /// In:  conditions
 ///      fft         the transform; its bricks decide which part of the mesh and so which particles this process makes
 ///      fine        a transform of side 3n/2 or more (2n with g_nl), on which products are free of aliasing; NULL to let them alias.
-///                  On more than one process it must hold, locally, the modes that `fft` holds
+///                  On more than one process, each must hold the same modes of both meshes below n/2: the slabs that FFTW-MPI deals out
+///                  for two sides do not
 ///      scratch     scratch_len bytes, see fixpair_initial_conditions_scratch_f64
 ///      exec        or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _TABLE, _SCRATCH, _CHOICE, _VERSION, _BRICK for a
-///          `fine` that is too small; after FIXPAIR_ERROR_HOOK, or FIXPAIR_ERROR_NOT_FINITE from fields that overflow, position and
-///          velocity are undefined
-/// Cost: at second order 13 transforms (2 more with f_nl or g_nl)
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _TABLE, _SCRATCH, _CHOICE, _VERSION, _CONVERGENCE, _OVERFLOW,
+///          _MESH_SIZE, _BRICK for a `fine` that is too small; after FIXPAIR_ERROR_HOOK, or FIXPAIR_ERROR_NOT_FINITE from fields that overflow, position and
+///          velocity are undefined; on several processes NOT_FINITE may be the answer of some only
+/// Cost: at second order 13 transforms of fft, or 6 of it and 8 of fine; 2 more with f_nl or g_nl
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.
@@ -250,7 +252,7 @@ unsafe fn all<H: Hook, C: Triple<Real = H::Real>>(
         let mut fft = HostFft::new(&mut border, fft)?;
         let mut fine = optional_fft(&mut border, fine)?;
         let scratch = border.scratch(scratch, scratch_len)?;
-        let (fine, exec) = (some_dyn(&mut fine), HostExec::new(exec)?);
+        let (fine, exec) = (some_dyn(&mut fine), HostExec::new(&mut border, exec)?);
         initial_conditions(&mut position, &mut velocity, &conditions, &mut fft, fine, scratch, &exec)
     }
 }

@@ -53,7 +53,7 @@ pub unsafe extern "C" fn fixpair_potential_amplitude_table(
         unsafe {
             let table = border.write(table, table_len)?;
             let poisson = with_poisson(&mut border, cosmology, linear, convention, 0.0)?;
-            potential_amplitude_table(&HostExec::new(exec)?, &poisson, n, box_size, table)
+            potential_amplitude_table(&HostExec::new(&mut border, exec)?, &poisson, n, box_size, table)
         }
     })())
 }
@@ -84,7 +84,7 @@ pub unsafe extern "C" fn fixpair_alpha_table(
         unsafe {
             let table = border.write(table, table_len)?;
             let poisson = with_poisson(&mut border, cosmology, linear, convention, redshift)?;
-            alpha_table(&HostExec::new(exec)?, &poisson, n, box_size, table)
+            alpha_table(&HostExec::new(&mut border, exec)?, &poisson, n, box_size, table)
         }
     })())
 }

@@ -10,7 +10,8 @@ use crate::status::{Error, Result};
 
 /// Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
 /// of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
-/// sizeof(struct) / sizeof(f64).
+/// sizeof(struct) / sizeof(double). A stride of 0 is refused (FIXPAIR_ERROR_RANGE), and so are arrays that share memory with different
+/// strides (FIXPAIR_ERROR_OVERLAP).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct fixpair_components_f64 {
@@ -36,7 +37,8 @@ impl Triple for fixpair_components_f64 {
 
 /// Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
 /// of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
-/// sizeof(struct) / sizeof(f32).
+/// sizeof(struct) / sizeof(float). A stride of 0 is refused (FIXPAIR_ERROR_RANGE), and so are arrays that share memory with different
+/// strides (FIXPAIR_ERROR_OVERLAP).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct fixpair_components_f32 {
@@ -168,7 +170,7 @@ unsafe fn move_particles<C: Triple>(
         let psi2 = border.read_optional(psi2, psi_len)?;
         let brick = border.read_one(brick)?.check()?;
         let step = Step { box_size, first_velocity: c1, second_velocity: c2 };
-        let exec = HostExec::new(exec)?;
+        let exec = HostExec::new(&mut border, exec)?;
         particles::displace(&mut position, &mut velocity, psi1, psi2, &brick, axis, &step, &exec)
     }
 }
@@ -197,7 +199,7 @@ pub unsafe extern "C" fn fixpair_particle_ids(
         unsafe {
             let ids = border.write(ids, len)?;
             let brick = border.read_one(brick)?.check()?;
-            particles::particle_ids(ids, &brick, first_id, &HostExec::new(exec)?)
+            particles::particle_ids(ids, &brick, first_id, &HostExec::new(&mut border, exec)?)
         }
     })())
 }

@@ -19,7 +19,7 @@ use crate::status::Result;
 /// In:     brick  of Fourier space
 ///         table  table_len >= fixpair_mode_table_length(n) factors
 ///         exec   or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _HOOK, or why the brick is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _HOOK, _NOT_FINITE for such a factor, or why the brick is refused
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.
@@ -67,7 +67,7 @@ unsafe fn scale<T: Real>(
         let modes = border.write(modes, len)?;
         let brick = border.read_one(brick)?.check()?;
         let table = border.read(table, table_len)?;
-        modes::scale_by_table(modes, &brick, table, &HostExec::new(exec)?)
+        modes::scale_by_table(modes, &brick, table, &HostExec::new(&mut border, exec)?)
     }
 }
 
@@ -131,7 +131,7 @@ unsafe fn copy<T: Real>(
         let to_brick = border.read_one(to_brick)?.check()?;
         let from = border.read(from, from_len)?;
         let from_brick = border.read_one(from_brick)?.check()?;
-        modes::copy_modes(to, &to_brick, from, &from_brick, &HostExec::new(exec)?)
+        modes::copy_modes(to, &to_brick, from, &from_brick, &HostExec::new(&mut border, exec)?)
     }
 }
 
@@ -256,7 +256,7 @@ unsafe fn local<H: Hook>(
         let mut arena = Arena::new(border.scratch(scratch, scratch_len)?, layout)?;
         let partial = arena.take::<[f64; 1]>(layout.size / size_of::<f64>())?;
         let local = Local { f_nl, g_nl };
-        add_local(modes, &brick, local, &mut work, mesh, partial, &HostExec::new(exec)?)
+        add_local(modes, &brick, local, &mut work, mesh, partial, &HostExec::new(&mut border, exec)?)
     }
 }
 
@@ -363,7 +363,7 @@ unsafe fn source_modes<H: Hook>(
         let mut work = HostFft::new(&mut border, work)?;
         let meshes =
             [border.write(mesh1, mesh_len)?, border.write(mesh2, mesh_len)?, border.write(mesh3, mesh_len)?];
-        let exec = HostExec::new(exec)?;
+        let exec = HostExec::new(&mut border, exec)?;
         lpt::second_order_source(source, density, &brick, &mut work, meshes, &exec)
     }
 }
@@ -438,7 +438,7 @@ unsafe fn psi_component<H: Hook>(
         let source = border.read(source, source_len)?;
         let brick = border.read_one(brick)?.check()?;
         let mut fft = HostFft::new(&mut border, fft)?;
-        let exec = HostExec::new(exec)?;
+        let exec = HostExec::new(&mut border, exec)?;
         lpt::displacement(psi, source, &brick, axis, scale, &mut fft, &exec)
     }
 }

@@ -1,11 +1,13 @@
 //! Which sides the built-in transform takes: even, with no prime factor but 2, 3, 5 and 7.
 
+use crate::mesh::{Brick, Space};
+
 /// The smallest such side that is not below `least`, for products without aliasing; none if it does not fit.
 #[must_use]
 pub fn next_side(least: usize) -> Option<usize> {
     let mut side = least.max(2).checked_next_multiple_of(2)?;
     // Gaps between such numbers are short: a few steps at any size that a mesh can have.
-    loop {
+    while Brick::whole(side, Space::Configuration).is_ok() {
         let odd = [2, 3, 5, 7].into_iter().fold(side, |rest, factor| {
             core::iter::successors(Some(rest), |&rest| rest.is_multiple_of(factor).then(|| rest / factor))
                 .last()
@@ -14,11 +16,9 @@ pub fn next_side(least: usize) -> Option<usize> {
         if odd == 1 {
             return Some(side);
         }
-        if side > 1 << 20 {
-            return None;
-        }
         side += 2;
     }
+    None
 }
 
 #[cfg(test)]
@@ -32,6 +32,7 @@ mod tests {
         for (least, side) in expected {
             assert_eq!(next_side(least), Some(side));
         }
+        assert_eq!(next_side(1 << 21), None, "its cube does not fit");
         assert_eq!(next_side(usize::MAX), None);
         assert_eq!(next_side(usize::MAX - 1), None);
     }

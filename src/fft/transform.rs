@@ -3,6 +3,8 @@
 //! Cost: 5/2 N log2 N floating-point operations by the usual count (N = n^3), and two sweeps that read and write the
 //! mesh, one per half: 4 N numbers moved at the least. No square or block of the mesh is copied: passes read columns
 //! straight from the mesh into the workspace and store the last pass straight back.
+//!
+//! Error: at most 0.45 epsilon sqrt(log2 N) of the r.m.s. value in the r.m.s., 8 times that in the worst place.
 
 use core::any::TypeId;
 
@@ -25,7 +27,7 @@ use crate::status::{Error, Result};
 const CHUNKS: usize = 64;
 
 /// Modes of padding after each x plane ([`Brick::whole_padded`]) with which the built-in transform is fastest: none,
-/// except where planes would begin a multiple of 4 KiB apart and their columns share a few sets of the cache.
+/// except where planes would begin a multiple of 1 KiB apart and their columns share a few sets of the cache.
 #[must_use]
 pub fn recommended_padding<T: Real>(n: usize) -> usize {
     let mode = 2 * size_of::<T>();

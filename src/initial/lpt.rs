@@ -8,7 +8,7 @@
 //! where D2/D^2 is near -3/7. Velocities are v = a H (f1 Psi1 + f2 Psi2). Lengths are in units of the box through a factor
 //! L/(2 pi), since k = (2 pi/L) n. Modes with a Nyquist component move nothing.
 
-use super::modes::{Factor, Scale, map_modes};
+use super::modes::{Copy, Factor, Scale, map_modes};
 use crate::exec::Exec;
 use crate::fft::Fft3;
 use crate::mesh::{Brick, Space};
@@ -117,6 +117,39 @@ pub fn second_order_source<T: Real>(
     let m = work.configuration().n() as f64;
     let modes = *work.fourier();
     map_modes(out, brick, sum, &modes, &Scale(1.0 / (m * m * m)), exec)
+}
+
+/// As [`second_order_products`] with one mesh less and one transform more: S = (delta^2 - sum_a phi_aa^2)/2 - sum_{a<b} phi_ab^2.
+pub(crate) fn second_order_squares<T: Real>(
+    density: &[T],
+    brick: &Brick,
+    work: &mut dyn Fft3<T>,
+    meshes: [&mut [T]; 2],
+    exec: &dyn Exec,
+) -> Result<()> {
+    let (cells, modes, length) = (*work.configuration(), *work.fourier(), work.length());
+    let [Some(sum), Some(a)] = meshes.map(|mesh| mesh.get_mut(..length)) else {
+        return Err(Error::Length);
+    };
+    map_modes(sum, &modes, density, brick, &Copy, exec)?;
+    work.inverse(sum)?;
+    let half = T::from_f64(0.5);
+    walk::<T, 1, 0>(exec, &cells, [sum], [], &|_, [sum], []| {
+        for s in sum {
+            *s = half * *s * *s;
+        }
+    })?;
+    for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+        map_modes(a, &modes, density, brick, &Tidal(along(i), along(j)), exec)?;
+        work.inverse(a)?;
+        let weight = if i == j { half } else { T::ONE };
+        walk::<T, 1, 1>(exec, &cells, [sum], [a], &|_, [sum], [a]| {
+            for (s, a) in sum.iter_mut().zip(a) {
+                *s -= weight * *a * *a;
+            }
+        })?;
+    }
+    work.forward(sum)
 }
 
 /// S, left as the un-normalised modes of the side of `work` in the first of `meshes`.

@@ -24,14 +24,16 @@ pub(crate) trait Factor: Sync {
 /// `modes`: Fourier `brick`; `table`: at least [`mode_table_length`] values.
 ///
 /// # Errors
-/// `Brick` for a brick of configuration space, `Length` for short arrays.
+/// `Brick` for a brick of configuration space, `Length` for short arrays, `NotFinite` for a table with such an entry. The modes
+/// themselves are not checked.
 ///
 /// Cost: one pass over the modes.
 pub fn scale_by_table<T: Real>(modes: &mut [T], brick: &Brick, table: &[f64], exec: &dyn Exec) -> Result<()> {
     brick.check_space(Space::Fourier)?;
     let n = brick.n();
-    if table.len() < mode_table_length(n)? {
-        return Err(Error::Length);
+    let table = table.get(..mode_table_length(n)?).ok_or(Error::Length)?;
+    if table.iter().any(|factor| !factor.is_finite()) {
+        return Err(Error::NotFinite);
     }
     walk::<T, 1, 0>(exec, brick, [modes], [], &|run, [row], []| {
         let (x, y) = (Brick::mode(n, run.index[0]), Brick::mode(n, run.index[1]));

@@ -118,7 +118,9 @@ pub fn displace<T: Real>(
     if [box_size, first_velocity, second_velocity].iter().any(|x| !x.is_finite()) {
         return Err(Error::NotFinite);
     }
-    if axis > 2 || !(box_size > 0.0 && T::from_f64(box_size).is_finite()) {
+    // In the particles' type too.
+    let edge = T::from_f64(box_size);
+    if axis > 2 || !(edge > T::ZERO && edge.is_finite()) {
         return Err(Error::Range);
     }
     let particles = brick.elements();
@@ -243,8 +245,14 @@ fn wrap_once(x: f64, box_size: f64) -> f64 {
     if x >= box_size { x - box_size } else { x }
 }
 
-/// x modulo L; NaN where x is not finite.
+/// Boxes from home beyond which a position has too few digits left to mean anything.
+const FARTHEST: f64 = 1e9;
+
+/// x modulo L; NaN where x is not finite or so far away that its place in the box is lost.
 fn wrap(x: f64, box_size: f64) -> f64 {
+    if !(libm::fabs(x) <= FARTHEST * box_size) {
+        return f64::NAN;
+    }
     let once = wrap_once(x, box_size);
     if once >= 0.0 && once < box_size {
         return once;

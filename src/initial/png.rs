@@ -86,6 +86,10 @@ pub fn add_local<T: Real>(
     if local.is_gaussian() {
         return Ok(());
     }
+    if local.g_nl != 0.0 {
+        // Nothing to sum: is there a sum at all? Later would be too late.
+        work.all_sum(&mut [])?;
+    }
     let (cells, modes) = (*work.configuration(), *work.fourier());
     let mesh = mesh.get_mut(..work.length()).ok_or(Error::Length)?;
     map_modes(mesh, &modes, phi, brick, &Copy, exec)?;

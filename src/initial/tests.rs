@@ -2,7 +2,7 @@ use core::f64::consts::TAU;
 use std::vec;
 use std::vec::Vec;
 
-use super::lpt::{displacement, second_order_source};
+use super::lpt::{displacement, second_order_source, second_order_squares};
 use super::modes::{copy_modes, scale_by_table};
 use super::particles::{Components, Step, displace, particle_ids};
 use super::png::{Local, add_local};
@@ -58,7 +58,12 @@ fn dealiased_square_equals_the_direct_convolution() {
 
 #[test]
 fn dealiased_cube_equals_the_direct_convolution() {
-    let n = 8;
+    for n in [8, 10, 12] {
+        cube_equals_the_direct_convolution(n);
+    }
+}
+
+fn cube_equals_the_direct_convolution(n: usize) {
     let phi = jumble(n, 2);
     let gaussian = Dense::from_mesh(&phi, n);
     let full = gaussian.times(&gaussian, 2 * gaussian.half);
@@ -66,7 +71,7 @@ fn dealiased_cube_equals_the_direct_convolution() {
     let cube = full.times(&gaussian, gaussian.half);
     let (f_nl, g_nl) = (0.3, -1.7);
     let expected = gaussian.plus(f_nl, &full).plus(g_nl, &cube).plus(-3.0 * g_nl * mean_square, &gaussian);
-    let actual = Dense::from_mesh(&png(&phi, n, Local { f_nl, g_nl }, 16), n);
+    let actual = Dense::from_mesh(&png(&phi, n, Local { f_nl, g_nl }, 2 * n), n);
     assert!(expected.distance(&actual) < 1e-13, "{}", expected.distance(&actual));
 }
 
@@ -235,7 +240,12 @@ fn second_order_of_crossed_waves_is_exact() {
 
 #[test]
 fn dealiased_second_order_equals_the_direct_convolution() {
-    let n = 8;
+    for (n, side) in [(8, 12), (12, 18), (16, 24)] {
+        second_order_equals_the_direct_convolution(n, side);
+    }
+}
+
+fn second_order_equals_the_direct_convolution(n: usize, side: usize) {
     let modes = jumble(n, 8);
     let brick = Brick::whole(n, Space::Fourier).unwrap();
     let delta = Dense::from_mesh(&modes, n);
@@ -250,7 +260,7 @@ fn dealiased_second_order_equals_the_direct_convolution() {
         expected = expected.plus(1.0, &tidal(a, a).times(&tidal(b, b), delta.half));
         expected = expected.plus(-1.0, &tidal(a, b).times(&tidal(a, b), delta.half));
     }
-    let mut work = Slow::new(12);
+    let mut work = Slow::new(side);
     let length = Fft3::<f64>::length(&work);
     let mut meshes = vec![0.0; 3 * length];
     let (one, rest) = meshes.split_at_mut(length);
@@ -258,6 +268,11 @@ fn dealiased_second_order_equals_the_direct_convolution() {
     let mut source = vec![0.0; brick.reals()];
     second_order_source(&mut source, &modes, &brick, &mut work, [one, two, three], &Serial).unwrap();
     assert!(expected.distance(&Dense::from_mesh(&source, n)) < 1e-13);
+    let (one, rest) = meshes.split_at_mut(length);
+    second_order_squares(&modes, &brick, &mut work, [&mut *one, rest], &Serial).unwrap();
+    copy_modes(&mut source, &brick, one, &Brick::whole(side, Space::Fourier).unwrap(), &Serial).unwrap();
+    source.iter_mut().for_each(|v| *v /= (side * side * side) as f64);
+    assert!(expected.distance(&Dense::from_mesh(&source, n)) < 1e-13, "the way with one mesh less");
 }
 
 #[test]
@@ -313,6 +328,14 @@ fn particles_do_not_depend_on_the_decomposition() {
 #[test]
 fn positions_never_reach_the_far_edge() {
     let brick = Brick::whole(2, Space::Configuration).unwrap();
+    for lost in [1e20_f32, -1e22] {
+        let (mut x, mut v) = ([0.0_f32; 24], [0.0_f32; 24]);
+        let step = Step { box_size: 100.0, first_velocity: 1.0, second_velocity: 0.0 };
+        let (x, v) = (&mut Components::triples(&mut x).unwrap(), &mut Components::triples(&mut v).unwrap());
+        assert_eq!(displace(x, v, &[lost; 16], None, &brick, 0, &step, &Serial), Err(Error::NotFinite));
+        let step = Step { box_size: 1e-60, ..step };
+        assert_eq!(displace(x, v, &[0.0; 16], None, &brick, 0, &step, &Serial), Err(Error::Range));
+    }
     for shift in [-1e-30_f32, -1e-9, 1e-9, 99.999_999, 100.0, -100.0, 12_345.6, -12_345.6, 0.0] {
         let psi = [shift; 16];
         let (mut x, mut v) = ([0.0_f32; 24], [0.0_f32; 24]);

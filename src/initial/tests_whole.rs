@@ -386,3 +386,19 @@ fn bad_conditions_are_refused_before_anything_is_written() {
     assert_eq!(attempt(&good, 12, 1000), Err(Error::Scratch));
     assert_eq!(attempt(&good, 12, all), Ok(()));
 }
+
+#[test]
+fn scratch_stays_within_the_documented_bytes_a_cell() {
+    fn bytes<T: Real>(order: Order, dealiased: bool) -> f64 {
+        let n = 64;
+        let (fft, fine) = (serial::<T>(n), serial::<T>(3 * n / 2));
+        let fine = dealiased.then_some(&fine as &dyn Fft3<T>);
+        initial_conditions_scratch(order, &fft, fine).unwrap().size as f64 / (n * n * n) as f64
+    }
+    // A row of n = 64 has 3% of padding, and the tables by |n|^2 add 12/n bytes; both shrink with n.
+    assert!(bytes::<f64>(Order::Second, false) < 33.3);
+    assert!(bytes::<f64>(Order::Second, true) < 64.0);
+    assert!(bytes::<f32>(Order::Second, false) < 16.8);
+    assert!(bytes::<f32>(Order::Second, true) < 32.1);
+    assert!(bytes::<f64>(Order::First, false) < 16.8);
+}

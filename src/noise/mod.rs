@@ -1,6 +1,6 @@
 //! White noise: unit modes w(k) of a Gaussian field, <|w|^2> = 1, each a function of the seed and of its mode number alone.
 //!
-//! seed -> Philox block at (i, j, l) -> two uniforms -> modulus and phase -> amplitude choice -> phase choice. Nothing
+//! seed -> Philox block at the mode number -> two uniforms -> modulus and phase -> amplitude choice -> phase choice. Nothing
 //! else enters: not the mesh side, the brick, the threads, the number type or the processor. So whatever two
 //! simulations share a seed share every mode that both hold (Matched), Fixed modes keep the phases of Normal ones, and Inverted
 //! modes are their exact negatives (Avila & Adame 2022, arXiv:2204.11103, section 2).
