@@ -250,12 +250,12 @@ const FARTHEST: f64 = 1e9;
 
 /// x modulo L; NaN where x is not finite or so far away that its place in the box is lost.
 fn wrap(x: f64, box_size: f64) -> f64 {
-    if !(libm::fabs(x) <= FARTHEST * box_size) {
-        return f64::NAN;
-    }
     let once = wrap_once(x, box_size);
     if once >= 0.0 && once < box_size {
         return once;
+    }
+    if libm::fabs(x) > FARTHEST * box_size {
+        return f64::NAN;
     }
     let wrapped = x - box_size * libm::floor(x / box_size);
     // A tiny negative x rounds up to the edge itself.
