@@ -5,7 +5,7 @@
 pub enum Simd {
     /// Any processor.
     Portable,
-    /// x86-64 with AVX2 and FMA. Never constructed where [`Simd::detect`] would not return it.
+    /// x86-64 with AVX2 and FMA. Public functions that take it fall back where [`Simd::detect`] would not return it.
     Avx2,
 }
 
@@ -43,7 +43,7 @@ impl Simd {
     /// Runs a loop compiled for this path. Only the width of the instructions differs: the compiler never fuses or reorders
     /// floating-point operations, so the results are the same bits. `body` has to be `#[inline(always)]` to gain.
     #[inline(always)]
-    pub fn vectorise<R>(self, body: impl FnOnce() -> R) -> R {
+    pub(crate) fn vectorise<R>(self, body: impl FnOnce() -> R) -> R {
         #[cfg(target_arch = "x86_64")]
         {
             #[target_feature(enable = "avx2")]
@@ -51,7 +51,7 @@ impl Simd {
                 body()
             }
             if self == Self::Avx2 {
-                // SAFETY: `Avx2` is constructed only where the processor has it.
+                // SAFETY: inside the crate `Avx2` comes from `detect`, so the processor has it.
                 return unsafe { wide(body) };
             }
         }
