@@ -402,3 +402,17 @@ fn scratch_stays_within_the_documented_bytes_a_cell() {
     assert!(bytes::<f32>(Order::Second, true) < 32.1);
     assert!(bytes::<f64>(Order::First, false) < 16.8);
 }
+
+#[test]
+fn tables_have_the_same_bits_on_every_machine() {
+    // FNV-1a of the bits: a change breaks every universe that was made before, and belongs in the changelog.
+    let hash = |values: &[f64]| {
+        let bytes = values.iter().flat_map(|v| v.to_bits().to_le_bytes());
+        bytes.fold(0xcbf2_9ce4_8422_2325_u64, |h, byte| (h ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    };
+    let (potential, alpha) = tables(16);
+    let motion = conditions(Realisation::new(0), 0.0).motion().unwrap();
+    let factors = [motion.second_order, motion.first_velocity, motion.second_velocity];
+    let pinned = [0xdc23_07d9_7a55_3429, 0xa564_6dd2_f72f_1193, 0x8c4b_7be2_5e33_8079];
+    assert_eq!([hash(&potential), hash(&alpha), hash(&factors)], pinned);
+}
