@@ -1,3 +1,4 @@
 //! Spectra of fields on meshes.
 
+pub mod exact;
 pub mod power;
