@@ -44,7 +44,7 @@ pub trait Plain: sealed::Sealed + Copy + Send + Sync + 'static {}
 macro_rules! plain {
     ($($t:ty),*) => { $(impl sealed::Sealed for $t {} impl Plain for $t {})* };
 }
-plain!(f32, f64, u8, u32, u64);
+plain!(f32, f64, u8, u16, u32, u64);
 impl<T: Plain, const N: usize> sealed::Sealed for [T; N] {}
 impl<T: Plain, const N: usize> Plain for [T; N] {}
 
