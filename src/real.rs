@@ -40,6 +40,8 @@ pub trait Real:
     fn to_f64(self) -> f64;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
+    /// Integer part and remainder, both exact where 0 <= self < 2^31.
+    fn split(self) -> (i32, Self);
 }
 
 impl Real for f32 {
@@ -61,6 +63,12 @@ impl Real for f32 {
     fn is_finite(self) -> bool {
         self.is_finite()
     }
+
+    #[inline(always)]
+    fn split(self) -> (i32, Self) {
+        let whole = self as i32;
+        (whole, self - whole as Self)
+    }
 }
 
 impl Real for f64 {
@@ -81,5 +89,11 @@ impl Real for f64 {
     #[inline(always)]
     fn is_finite(self) -> bool {
         self.is_finite()
+    }
+
+    #[inline(always)]
+    fn split(self) -> (i32, Self) {
+        let whole = self as i32;
+        (whole, self - Self::from(whole))
     }
 }

@@ -17,6 +17,7 @@ pub mod mesh;
 pub mod mode_table;
 pub mod noise;
 pub mod particles;
+pub mod pm;
 pub mod stages;
 pub mod status;
 
