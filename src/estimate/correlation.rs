@@ -14,6 +14,7 @@ use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::scratch::{Arena, Layout};
+use crate::simd::Simd;
 use crate::status::{Error, Result};
 use crate::walk::walk;
 
@@ -109,7 +110,8 @@ pub fn correlation_sums<T: Real>(
     for mesh in meshes {
         brick.check_length(mesh)?;
     }
-    sweep(sums, brick, &binning.check()?, &Separations { meshes, stride: brick.stride()[2] }, scratch, exec)
+    let separations = Separations { meshes, stride: brick.stride()[2] };
+    sweep(sums, brick, &binning.check()?, &separations, scratch, exec, Simd::detect())
 }
 
 /// Correlation functions on meshes.

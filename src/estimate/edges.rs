@@ -109,14 +109,14 @@ mod tests {
     fn bad_edges_are_refused_and_nothing_is_written() {
         let mut edges = [5; 3];
         assert_eq!(uniform_edges(&mut edges, 1.0, 0.0), Err(Error::Table));
-        assert_eq!(uniform_edges(&mut edges, 1.0, -0.6), Err(Error::Range));
+        assert_eq!(uniform_edges(&mut edges, -1.0, 2.0), Err(Error::Range));
         assert_eq!(uniform_edges(&mut edges, 0.1, 0.1), Err(Error::Table), "0.01 and 0.04 are both 1");
         assert_eq!(uniform_edges(&mut edges, f64::NAN, 1.0), Err(Error::NotFinite));
         assert_eq!(uniform_edges(&mut edges, 1.0, 1e300), Err(Error::Range));
         assert_eq!(uniform_edges(&mut edges[..1], 1.0, 1.0), Err(Error::Table));
         assert_eq!(wavenumber_edges(&mut edges, &[0.1, 0.2], 100.0), Err(Error::Length));
         assert_eq!(wavenumber_edges(&mut edges, &[0.1, 0.2, 0.3], 0.0), Err(Error::Range));
-        assert_eq!(wavenumber_edges(&mut edges, &[0.1, 0.2, f64::INFINITY], 9.0), Err(Error::NotFinite));
+        assert_eq!(wavenumber_edges(&mut edges, &[0.1, 0.2, f64::INFINITY], 900.0), Err(Error::NotFinite));
         assert_eq!(exact_edges(&mut edges, u64::MAX - 1), Err(Error::Overflow));
         assert_eq!(edges, [5; 3]);
     }

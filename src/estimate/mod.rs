@@ -8,3 +8,6 @@ pub mod exact;
 mod line;
 pub mod power;
 mod sweep;
+
+#[cfg(test)]
+mod tests;

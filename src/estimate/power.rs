@@ -20,6 +20,7 @@ use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::scratch::{Arena, Layout};
+use crate::simd::Simd;
 use crate::status::{Error, Result};
 
 /// Scratch of [`power_sums`] for `pairs` pairs of fields. At most 64 sets of partial sums, or 64 MiB of them (two sets if one is more), 4 bytes for
@@ -61,6 +62,21 @@ pub fn power_sums<T: Real>(
     scratch: &mut [u8],
     exec: &dyn Exec,
 ) -> Result<()> {
+    power_sums_on(sums, fields, pairs, compensation, brick, binning, scratch, exec, Simd::detect())
+}
+
+/// [`power_sums`] on a given code path.
+pub(super) fn power_sums_on<T: Real>(
+    sums: &mut [i64],
+    fields: &[&[T]],
+    pairs: &[[usize; 2]],
+    compensation: &[Compensation],
+    brick: &Brick,
+    binning: &Binning<'_>,
+    scratch: &mut [u8],
+    exec: &dyn Exec,
+    simd: Simd,
+) -> Result<()> {
     let layout = power_sums_scratch(brick, binning, pairs.len())?;
     for field in fields {
         brick.check_length(field)?;
@@ -90,7 +106,7 @@ pub fn power_sums<T: Real>(
         }
     }
     let modes = Modes { fields, pairs, factor, along, brick };
-    sweep(sums, brick, &checked, &modes, rest, exec)
+    sweep(sums, brick, &checked, &modes, rest, exec, simd)
 }
 
 /// Pairs of fields of modes.

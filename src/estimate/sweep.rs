@@ -149,6 +149,7 @@ pub(super) fn sweep<S: Source>(
     source: &S,
     scratch: &mut [u8],
     exec: &dyn Exec,
+    simd: Simd,
 ) -> Result<()> {
     let spectra = source.spectra();
     if words.len() != checked.words(spectra)? {
@@ -192,7 +193,6 @@ pub(super) fn sweep<S: Source>(
         increasing: brick.space() == Space::Fourier,
     };
     let rows = Rows { brick, axis: checked.axis, pieces };
-    let simd = Simd::detect();
     let memory = Shared::new(lines_memory);
     let line_of = |piece: usize| {
         // SAFETY: each piece has `line_bytes.size` bytes of its own and runs once at a time.
