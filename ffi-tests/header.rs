@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 13] = [
+const SECTIONS: [(&str, &str); 15] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -16,11 +16,13 @@ const SECTIONS: [(&str, &str); 13] = [
     ("stages", "Initial conditions stage by stage"),
     ("particles", "Particles"),
     ("pm", "Deposit and read-out"),
-    ("estimate", "Spectra"),
+    ("binning", "Bins of spectra and correlation functions"),
+    ("power", "Power spectrum"),
+    ("correlation", "Correlation function"),
 ];
 
 /// Files outside `src/capi` that define structs of the interface.
-const STRUCTS: [&str; 3] = ["src/scratch.rs", "src/cosmology/growth.rs", "src/estimate/power.rs"];
+const STRUCTS: [&str; 3] = ["src/scratch.rs", "src/cosmology/growth.rs", "src/estimate/binning.rs"];
 
 const PREAMBLE: &str = include_str!("header_preamble.h");
 

@@ -1,7 +1,9 @@
 //! The cases that exist in both precisions.
 
 use fixpair::cosmology::{Convention, Cosmology, Linear, Table};
-use fixpair::estimate::power::{Bin, power_sums, power_sums_scratch};
+use fixpair::estimate::binning::{Bin, Binning, normalise, read_sums};
+use fixpair::estimate::compensation::Compensation;
+use fixpair::estimate::power::{power_sums, power_sums_scratch};
 use fixpair::exec::Serial;
 use fixpair::fft::{Fft3, Tables, Transform, recommended_padding};
 use fixpair::initial::conditions::{
@@ -15,6 +17,7 @@ use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{
     Amplitude, Nyquist, Phase, Realisation, impose, unit_modes_from_field, white_modes, white_modes_coloured,
 };
+use fixpair::pm::Window;
 use fixpair::real::Real;
 use fixpair::scratch::Layout;
 
@@ -185,18 +188,26 @@ fn stage_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
     }
     add("displace", triples(triples(Hash::new(), &position), &velocity));
     let edges: Vec<u64> = (1..=7).map(|b| b * b).collect();
-    let layout = power_sums_scratch(&brick, &edges).expect("scratch");
+    let binning = Binning { axis: [0.0, 0.0, 2.0], orders: 0b10101, ..Binning::shells(&edges) };
+    let pairs = [[0, 0], [0, 1]];
+    let layout = power_sums_scratch(&brick, &binning, pairs.len()).expect("scratch");
     add("power_sums_scratch", Hash::new().integers(&[layout.size as u64, layout.align as u64]));
-    for (name, second) in [("power_sums", None), ("power_sums.cross", Some(&source[..]))] {
-        let mut bins = vec![Bin::default(); edges.len() - 1];
-        let mut scratch = Memory::new(layout);
-        let scratch = scratch.bytes(layout.size);
-        power_sums(&mut bins, &edges, &density, second, &brick, scratch, &Serial).expect("sums");
-        let hash = bins
-            .iter()
-            .fold(Hash::new(), |hash, bin| hash.integers(&[bin.modes]).doubles(&[bin.wavenumber, bin.power]));
-        add(name, hash);
-    }
+    let mut sums = vec![0_i64; binning.words(pairs.len()).expect("words")];
+    let mut scratch = Memory::new(layout);
+    let scratch = scratch.bytes(layout.size);
+    let aliased = Compensation::Aliased(Window::CloudInCell);
+    let fields = [&density[..], &source];
+    let compensation = [Compensation::None, aliased];
+    power_sums(&mut sums, &fields, &pairs, &compensation, &brick, &binning, scratch, &Serial).expect("sums");
+    add("power_sums", sums.iter().fold(Hash::new(), |hash, &word| hash.integers(&[word.cast_unsigned()])));
+    let mut bins = vec![Bin::default(); edges.len() - 1];
+    let mut values = vec![0.0; bins.len() * pairs.len() * binning.multipoles()];
+    read_sums(&mut bins, &mut values, &sums, &binning, pairs.len()).expect("bins");
+    normalise(&mut values, &bins, binning.orders, BOX * BOX * BOX).expect("spectra");
+    let hash = bins
+        .iter()
+        .fold(Hash::new(), |hash, bin| hash.integers(&[bin.count]).doubles(&[bin.first, bin.second]));
+    add("power", hash.doubles(&values));
 }
 
 fn triples<T: Real>(hash: Hash, values: &[T]) -> Hash {

@@ -34,6 +34,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* The highest multipole. */
+#define HIGHEST_ORDER 4
+
 /* Done. */
 #define FIXPAIR_OK 0
 
@@ -165,6 +168,27 @@
 
 /* Piecewise cubic spline: p = 4. */
 #define FIXPAIR_WINDOW_PCS 4
+
+/* Bins of |n| alone. */
+#define FIXPAIR_SECOND_NONE 0
+
+/* Wedges of mu = |n.a|/|n|. */
+#define FIXPAIR_SECOND_COSINE 1
+
+/* Bins of n_perp and |n.a|, for P(k_perp, k_par). */
+#define FIXPAIR_SECOND_PARALLEL 2
+
+/* Modes are taken as they are. */
+#define FIXPAIR_COMPENSATION_NONE 0
+
+/* Plus FIXPAIR_WINDOW_...: modes are divided by the window, sinc^p an axis. For interlaced meshes, and for the signal at low k. */
+#define FIXPAIR_COMPENSATION_WINDOW 16
+
+/*
+ * Plus FIXPAIR_WINDOW_...: modes are divided by the root of the window's aliased power (Jing 2005's C1), so that shot noise is flat. For meshes that are
+ * not interlaced.
+ */
+#define FIXPAIR_COMPENSATION_ALIASED 32
 
 #if !defined(FIXPAIR_NO_THREADS)
 /* The built-in pool of threads; opaque. */
@@ -478,14 +502,44 @@ typedef struct fixpair_positions_f32 {
   size_t length;
 } fixpair_positions_f32;
 
-/* Raw sums of one bin. */
+/*
+ * What spectra and correlation functions are binned by. n is an integer vector: the mode k = (2 pi/L) n, or the separation x = (L/N) n.
+ *
+ * Bin b holds edges[b] <= |n|^2 < edges[b+1]: integers, so that no mode lies on an edge by rounding. With a second coordinate bin (b, c) is number
+ * b (second_edges_len - 1) + c. Wedges hold second_edges[c] <= mu < second_edges[c+1], edges in [0, 1], the last one inclusive, and mu = 0 at n = 0. With
+ * FIXPAIR_SECOND_PARALLEL edges are those of n_perp^2 = |n|^2 - (n.a)^2 and second_edges those of |n.a|, a being the line of sight.
+ *
+ * Fill it with fixpair_binning_init, then change what is to be otherwise. Functions refuse with FIXPAIR_ERROR_TABLE edges that do not increase, with
+ * FIXPAIR_ERROR_RANGE an axis of length 0 and orders that are 0 or above 31, with FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_CHOICE and
+ * FIXPAIR_ERROR_VERSION what these say, and with FIXPAIR_ERROR_OVERFLOW bins that do not fit memory.
+ */
+typedef struct fixpair_binning {
+  /* sizeof(fixpair_binning). */
+  size_t struct_size;
+  /* Increasing values of |n|^2. */
+  const uint64_t *edges;
+  /* How many: one more than bins of the first coordinate. */
+  size_t edges_len;
+  /* FIXPAIR_SECOND_... */
+  int32_t second;
+  /* Multipoles: bit l asks for l = 0..4. 1 is the mean alone, 21 is l = 0, 2, 4. */
+  uint32_t orders;
+  /* Increasing edges of the second coordinate; NULL without one. */
+  const double *second_edges;
+  /* How many; 0 without a second coordinate. */
+  size_t second_edges_len;
+  /* The line of sight, of any length. */
+  double axis[3];
+} fixpair_binning;
+
+/* What a bin holds besides its sums. */
 typedef struct fixpair_bin {
-  /* Modes, counting k and -k; 0 where no mode falls into the bin. */
-  uint64_t modes;
-  /* Sum of |n| over them: times (2 pi/L)/modes it is the mean k. */
-  double wavenumber;
-  /* Sum of Re f_k g_k* over them: times V/modes it is P(k). */
-  double power;
+  /* Modes, counting k and -k, or separations; 0 where none falls into the bin. */
+  uint64_t count;
+  /* Their mean |n|, or mean n_perp; 0 where there are none. Times 2 pi/L it is a wavenumber, times L/N a separation. */
+  double first;
+  /* Their mean mu, or mean |n.a|; 0 without a second coordinate. */
+  double second;
 } fixpair_bin;
 
 #ifdef __cplusplus
@@ -1561,64 +1615,340 @@ fixpair_status_t fixpair_interlace_f32(float *modes,
                                        const struct fixpair_exec *exec);
 
 /*
- * Spectra
- * =======
+ * Bins of spectra and correlation functions
+ * =========================================
  */
 
 /*
- * Scratch of fixpair_power_sums: 24 bytes for each bin and index of the brick's outermost axis, 4 bytes for each |n|^2 below the
- * last edge (at most 3 (n/2)^2 + 1 of them), each rounded up to 64.
+ * Bins of |n| with the mean alone; the line of sight is z.
+ *
+ * Out: binning  refers to the edges, which have to stay where they are
+ * In:  edges    edges_len increasing values of |n|^2, see fixpair_edges_uniform and its neighbours
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _TABLE
+ */
+fixpair_status_t fixpair_binning_init(struct fixpair_binning *binning,
+                                      const uint64_t *edges,
+                                      size_t edges_len);
+
+/*
+ * Lengths of the arrays that belong to a binning.
+ *
+ * Out: bins     bins of both coordinates
+ *      values   of `spectra` spectra: spectra x bins x multipoles
+ *      words    int64_t of the sums of `spectra` spectra
+ * In:  binning
+ *      spectra  pairs of fields, or correlation meshes, that are summed together: 1 or more
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_LENGTH for no spectra, or why the binning is refused
+ */
+fixpair_status_t fixpair_binning_lengths(size_t *bins,
+                                         size_t *values,
+                                         size_t *words,
+                                         const struct fixpair_binning *binning,
+                                         size_t spectra);
+
+/*
+ * Turns sums into bins: what each holds, and the sums of p(n) L_l(mu) in it, rounded once.
+ *
+ * Sums are integers. They begin as zeros; fixpair_power_sums_* and fixpair_correlation_sums_* add to them; and those of several bricks or ranks of one
+ * mesh, added one by one (MPI_INT64_T, MPI_SUM) in any order, are those of the whole mesh bit for bit.
+ *
+ * Out: bins     bins_len bins
+ *      values   values_len numbers: for each spectrum, each bin, each multipole in increasing order
+ * In:  sums     sums_len integers; all lengths as fixpair_binning_lengths
+ *      binning, spectra  as they were summed
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE if a product was NaN, infinite or above
+ *          1e198 (nothing is then written), or why the binning is refused
+ */
+fixpair_status_t fixpair_binning_read(struct fixpair_bin *bins,
+                                      size_t bins_len,
+                                      double *values,
+                                      size_t values_len,
+                                      const int64_t *sums,
+                                      size_t sums_len,
+                                      const struct fixpair_binning *binning,
+                                      size_t spectra);
+
+/*
+ * Turns sums into multipoles: value_l <- (2l + 1) factor value_l / count, and 0 in empty bins.
+ *
+ * For P_l in (Mpc/h)^3 the factor is L^3 s^2, where s makes the modes those of f(x) = sum_k f_k exp(+i k.x): 1/n^3 after an un-normalised transform
+ * of an overdensity. For xi_l it is 1. The variance of P_0 of a Gaussian field is 2 P^2/count.
+ *
+ * In/out: values  values_len numbers of one or more spectra
+ * In:     bins    bins_len bins
+ *         orders  as in the binning
+ *         factor
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE for orders, _NOT_FINITE for the factor
+ */
+fixpair_status_t fixpair_binning_normalise(double *values,
+                                           size_t values_len,
+                                           const struct fixpair_bin *bins,
+                                           size_t bins_len,
+                                           uint32_t orders,
+                                           double factor);
+
+/*
+ * Edges at |n| = first + b width: the least integers |n|^2 that are not below, to 1e-9.
+ *
+ * first = 1, width = 1: unit shells [1, 2), [2, 3)... First = w/2, width = w: shells about w, 2w, ..., where a mode goes to the nearest.
+ *
+ * Out: edges  edges_len integers
+ * In:  first, width
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _NOT_FINITE, FIXPAIR_ERROR_RANGE for edges below 0 or from 4e9 on, FIXPAIR_ERROR_TABLE for
+ *          fewer than two edges or edges that do not increase as integers; nothing is then written
+ */
+fixpair_status_t fixpair_edges_uniform(uint64_t *edges,
+                                       size_t edges_len,
+                                       double first,
+                                       double width);
+
+/*
+ * Edges at wavenumbers k: the least integers |n|^2 that are not below (k L/(2 pi))^2, to 1e-9, so that an edge on a mode is that mode.
+ *
+ * Out: edges        edges_len integers
+ * In:  wavenumbers  edges_len increasing values in h/Mpc
+ *      box_size     L in Mpc/h
+ * Returns: as fixpair_edges_uniform, or FIXPAIR_ERROR_OVERLAP, FIXPAIR_ERROR_RANGE for a box that is not positive
+ */
+fixpair_status_t fixpair_edges_wavenumbers(uint64_t *edges,
+                                           const double *wavenumbers,
+                                           size_t edges_len,
+                                           double box_size);
+
+/*
+ * Every |n|^2 a bin of its own: first, first + 1, ... Bins of numbers that are no sum of three squares (7, 15...) stay empty.
+ *
+ * Out: edges  edges_len integers
+ * In:  first
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, FIXPAIR_ERROR_TABLE for fewer than two edges, _OVERFLOW; nothing is then written
+ */
+fixpair_status_t fixpair_edges_exact(uint64_t *edges,
+                                     size_t edges_len,
+                                     uint64_t first);
+
+/*
+ * Power spectrum
+ * ==============
+ */
+
+/*
+ * Scratch of fixpair_power_sums_*: partial sums for at most 64 pieces of the work, or 64 MiB of them (two pieces if one is more); 4 bytes for each |n|^2
+ * below the last edge (at most 3 (n/2)^2 + 1 of them) and for each of 2 (n/2)^2 + 1 squares of (i, j); and a few rows for each piece and pair.
  *
  * Out: scratch
- * In:  brick  of Fourier space
- *      edges  edges_len increasing values of |n|^2
- * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_TABLE, FIXPAIR_ERROR_OVERFLOW, or why the brick is refused
+ * In:  brick      of Fourier space
+ *      binning
+ *      pairs_len  pairs of fields
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_LENGTH for no pairs, FIXPAIR_ERROR_OVERFLOW, or why brick or binning are refused
  */
 fixpair_status_t fixpair_power_sums_scratch(struct fixpair_layout *scratch,
                                             const struct fixpair_brick *brick,
-                                            const uint64_t *edges,
-                                            size_t edges_len);
+                                            const struct fixpair_binning *binning,
+                                            size_t pairs_len);
 
 /*
- * Sums the power of modes in bins of |n|^2, n = k L/(2 pi): bin b holds edges[b] <= |n|^2 < edges[b+1].
+ * Adds f_k g_k* L_l(mu), summed over the modes of a brick bin by bin, to sums, for several pairs of fields in one sweep.
  *
- * With V = L^3, a bin's spectrum is P = V power/modes at mean k = (2 pi/L) wavenumber/modes. Its variance for a Gaussian field is
- * 2 P^2/modes. Edges b^2 (b = 1, 2, 3...) give the usual unit shells. Sums of several bricks of one mesh add up.
+ * For modes with f(x) = sum_k f_k exp(+i k.x) and V = L^3, P_l(k) = (2l + 1) V <f_k g_k* L_l(k.a/|k|)>. The mean runs over k and -k, so that even multipoles
+ * are real and odd ones imaginary: for odd l the sums hold Im f g* L_l, and P_l is i times the result; the dipole is positive where g is f moved
+ * by a small step along the line of sight a. Nothing is normalised or subtracted here:
  *
- * Out: bins     bins_len = edges_len - 1 raw sums, overwritten
- * In:  edges    edges_len increasing values of |n|^2
- *      f        len reals: modes with f(x) = sum_k f_k exp(+i k.x)
- *      g        len reals: a second field, for the cross spectrum Re f_k g_k*; NULL for the power of f
- *      brick    where the modes lie
- *      scratch  scratch_len bytes, see fixpair_power_sums_scratch
- *      exec     or NULL
- * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _TABLE, _SCRATCH, _HOOK, FIXPAIR_ERROR_NOT_FINITE if a sum is
- *          NaN or infinite, or why the brick is refused
+ *     int64_t *sums = calloc(words, sizeof *sums);         see fixpair_binning_lengths
+ *     fixpair_power_sums_f64(sums, words, ...);            on each rank, then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
+ *     fixpair_binning_read(bins, bins_len, P, P_len, sums, words, &binning, pairs_len);
+ *     fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);
+ *     fixpair_subtract_shot_noise(P, P_len, pairs, pairs_len, bins, bins_len, binning.orders, &noise, 1);    if wanted
+ *
+ * The bits do not depend on threads or on how the mesh is cut along x or y; bricks that cut axis 2 agree to rounding.
+ *
+ * In/out: sums          sums_len integers, zeros at first
+ * In:     fields        fields_len <= 8 pointers to modes on the brick, len reals each
+ *         pairs         pairs_len pairs of field numbers: {0, 0} for the spectrum of the first, {0, 1} for its cross spectrum with the second
+ *         compensation  one for each field: FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_CIC and so on; NULL for none
+ *         brick         of Fourier space
+ *         binning
+ *         scratch       scratch_len bytes, see fixpair_power_sums_scratch
+ *         exec          or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _SCRATCH, _HOOK, FIXPAIR_ERROR_RANGE for a pair of a field that there is not,
+ *          FIXPAIR_ERROR_CHOICE for a compensation, or why brick or binning are refused; nothing is then added. A NaN in a mesh shows in
+ *          fixpair_binning_read.
+ * Cost: one pass over each field
  */
-fixpair_status_t fixpair_power_sums_f64(struct fixpair_bin *bins,
-                                        size_t bins_len,
-                                        const uint64_t *edges,
-                                        size_t edges_len,
-                                        const double *f,
-                                        const double *g,
+fixpair_status_t fixpair_power_sums_f64(int64_t *sums,
+                                        size_t sums_len,
+                                        const double *const *fields,
+                                        size_t fields_len,
                                         size_t len,
+                                        const size_t (*pairs)[2],
+                                        size_t pairs_len,
+                                        const int32_t *compensation,
                                         const struct fixpair_brick *brick,
+                                        const struct fixpair_binning *binning,
                                         void *scratch,
                                         size_t scratch_len,
                                         const struct fixpair_exec *exec);
 
-/* fixpair_power_sums_f64 for single precision; sums are in double precision all the same. */
-fixpair_status_t fixpair_power_sums_f32(struct fixpair_bin *bins,
-                                        size_t bins_len,
-                                        const uint64_t *edges,
-                                        size_t edges_len,
-                                        const float *f,
-                                        const float *g,
+/* fixpair_power_sums_f64 for single precision; sums are the same exact ones. */
+fixpair_status_t fixpair_power_sums_f32(int64_t *sums,
+                                        size_t sums_len,
+                                        const float *const *fields,
+                                        size_t fields_len,
                                         size_t len,
+                                        const size_t (*pairs)[2],
+                                        size_t pairs_len,
+                                        const int32_t *compensation,
                                         const struct fixpair_brick *brick,
+                                        const struct fixpair_binning *binning,
                                         void *scratch,
                                         size_t scratch_len,
                                         const struct fixpair_exec *exec);
+
+/*
+ * The shot noise of particles: V sum w^2/(sum w)^2, or V/N without weights, V = L^3.
+ *
+ * Out: noise      in the unit of L^3
+ * In:  weights    one for each particle; NULL for equal weights
+ *      particles  how many
+ *      box_size   L
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive, no particles, or weights
+ *          that sum to 0
+ */
+fixpair_status_t fixpair_shot_noise_f64(double *noise,
+                                        const double *weights,
+                                        uint64_t particles,
+                                        double box_size);
+
+/* fixpair_shot_noise_f64 for weights in single precision. */
+fixpair_status_t fixpair_shot_noise_f32(double *noise,
+                                        const float *weights,
+                                        uint64_t particles,
+                                        double box_size);
+
+/*
+ * Subtracts shot noise from the monopoles of auto spectra: all else has none and stays as it is.
+ *
+ * Flat noise is right for meshes compensated by FIXPAIR_COMPENSATION_ALIASED, and for interlaced ones compensated by FIXPAIR_COMPENSATION_WINDOW
+ * well below the Nyquist frequency.
+ *
+ * In/out: values  values_len numbers: the normalised spectra of all pairs
+ * In:     pairs   pairs_len pairs of field numbers
+ *         bins    bins_len bins; empty ones stay 0
+ *         orders  as in the binning
+ *         noise   noise_len values: of each field
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a pair of a field without noise or for orders
+ */
+fixpair_status_t fixpair_subtract_shot_noise(double *values,
+                                             size_t values_len,
+                                             const size_t (*pairs)[2],
+                                             size_t pairs_len,
+                                             const struct fixpair_bin *bins,
+                                             size_t bins_len,
+                                             uint32_t orders,
+                                             const double *noise,
+                                             size_t noise_len);
+
+/*
+ * Correlation function
+ * ====================
+ */
+
+/*
+ * Scratch of fixpair_correlation_modes_*: n/2 + 1 double.
+ *
+ * Out: scratch
+ * In:  brick  of Fourier space
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, or why the brick is refused
+ */
+fixpair_status_t fixpair_correlation_modes_scratch(struct fixpair_layout *scratch,
+                                                   const struct fixpair_brick *brick);
+
+/*
+ * f_k <- scale f_k g_k*, compensated; k = 0 becomes 0. The inverse transform then gives xi(x) = <f(y + x) g(y)> on the mesh, as
+ * xi(x) = sum_k f_k g_k* exp(+i k.x), which sums to 0 over the box.
+ *
+ * In/out: modes         len reals: f, replaced
+ * In:     other         len reals: g; NULL for f itself
+ *         compensation, other_compensation  as in fixpair_power_sums_*; the second is not read where other is NULL
+ *         scale         of both fields together: 1/n^6 for modes of un-normalised transforms
+ *         brick         of Fourier space
+ *         scratch       scratch_len bytes, see fixpair_correlation_modes_scratch
+ *         exec          or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _SCRATCH, _CHOICE, _NOT_FINITE for the scale, or why the brick is refused;
+ *          FIXPAIR_ERROR_HOOK, after which modes are undefined. Modes are not checked: a NaN shows in fixpair_binning_read.
+ */
+fixpair_status_t fixpair_correlation_modes_f64(double *modes,
+                                               const double *other,
+                                               size_t len,
+                                               int32_t compensation,
+                                               int32_t other_compensation,
+                                               double scale,
+                                               const struct fixpair_brick *brick,
+                                               void *scratch,
+                                               size_t scratch_len,
+                                               const struct fixpair_exec *exec);
+
+/* fixpair_correlation_modes_f64 in single precision. */
+fixpair_status_t fixpair_correlation_modes_f32(float *modes,
+                                               const float *other,
+                                               size_t len,
+                                               int32_t compensation,
+                                               int32_t other_compensation,
+                                               double scale,
+                                               const struct fixpair_brick *brick,
+                                               void *scratch,
+                                               size_t scratch_len,
+                                               const struct fixpair_exec *exec);
+
+/*
+ * Scratch of fixpair_correlation_sums_*: as fixpair_power_sums_scratch.
+ *
+ * Out: scratch
+ * In:  brick       of configuration space
+ *      binning
+ *      meshes_len  meshes summed together
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_LENGTH for no meshes, FIXPAIR_ERROR_OVERFLOW, or why brick or binning are refused
+ */
+fixpair_status_t fixpair_correlation_sums_scratch(struct fixpair_layout *scratch,
+                                                  const struct fixpair_brick *brick,
+                                                  const struct fixpair_binning *binning,
+                                                  size_t meshes_len);
+
+/*
+ * Adds xi(x) L_l(mu), summed over the separations of a brick bin by bin, to sums. A cell of index i is the separation i L/n, or (i - n) L/n
+ * above n/2; |n|^2 of the binning is that of the separation in cells. Read and normalise as spectra: fixpair_binning_read, fixpair_binning_normalise
+ * with factor 1 give xi_l = (2l + 1) <xi L_l>. Shot noise sits at separation 0: edges that begin at 1 leave it out.
+ *
+ * In/out: sums     sums_len integers, zeros at first
+ * In:     meshes   meshes_len <= 8 pointers to xi on the brick, len reals each
+ *         brick    of configuration space
+ *         binning
+ *         scratch  scratch_len bytes, see fixpair_correlation_sums_scratch
+ *         exec     or NULL
+ * Returns: as fixpair_power_sums_f64
+ * Cost: one pass over each mesh
+ */
+fixpair_status_t fixpair_correlation_sums_f64(int64_t *sums,
+                                              size_t sums_len,
+                                              const double *const *meshes,
+                                              size_t meshes_len,
+                                              size_t len,
+                                              const struct fixpair_brick *brick,
+                                              const struct fixpair_binning *binning,
+                                              void *scratch,
+                                              size_t scratch_len,
+                                              const struct fixpair_exec *exec);
+
+/* fixpair_correlation_sums_f64 for single precision; sums are the same exact ones. */
+fixpair_status_t fixpair_correlation_sums_f32(int64_t *sums,
+                                              size_t sums_len,
+                                              const float *const *meshes,
+                                              size_t meshes_len,
+                                              size_t len,
+                                              const struct fixpair_brick *brick,
+                                              const struct fixpair_binning *binning,
+                                              void *scratch,
+                                              size_t scratch_len,
+                                              const struct fixpair_exec *exec);
 
 #ifdef __cplusplus
 }  // extern "C"

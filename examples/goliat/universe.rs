@@ -8,7 +8,9 @@
 use fixpair::cosmology::{
     Convention, Cosmology, Linear, Table, alpha_table, mode_table_length, potential_amplitude_table,
 };
-use fixpair::estimate::power::{Bin, power_sums, power_sums_scratch};
+use fixpair::estimate::binning::{Bin, Binning, normalise, read_sums};
+use fixpair::estimate::compensation::Compensation;
+use fixpair::estimate::power::{power_sums, power_sums_scratch};
 use fixpair::exec::Serial;
 use fixpair::fft::{Fft3, Tables, Transform, next_side};
 use fixpair::initial::conditions::{InitialConditions, Order};
@@ -108,15 +110,20 @@ impl Universe {
     /// sum_k Re f_k g_k* over all modes but the mean.
     fn sum(&self, f: &[f64], g: &[f64]) -> Result<f64, Failure> {
         let edges = [1, self.alpha.len() as u64];
-        Ok(self.bins(&edges, f, Some(g))?[0].power)
+        Ok(self.sums(&Binning::shells(&edges), f, g)?.1[0])
     }
 
-    fn bins(&self, edges: &[u64], f: &[f64], g: Option<&[f64]>) -> Result<Vec<Bin>, Failure> {
+    /// Bins, and the sum of Re f_k g_k* in each.
+    fn sums(&self, binning: &Binning<'_>, f: &[f64], g: &[f64]) -> Result<(Vec<Bin>, Vec<f64>), Failure> {
         let brick = self.fourier()?;
-        let mut bins = vec![Bin::default(); edges.len() - 1];
-        let mut scratch = Memory::new(power_sums_scratch(&brick, edges)?);
-        power_sums(&mut bins, edges, f, g, &brick, scratch.bytes(), &Serial)?;
-        Ok(bins)
+        let mut sums = vec![0; binning.words(1)?];
+        let mut scratch = Memory::new(power_sums_scratch(&brick, binning, 1)?);
+        let none = [Compensation::None; 2];
+        power_sums(&mut sums, &[f, g], &[[0, 1]], &none, &brick, binning, scratch.bytes(), &Serial)?;
+        let mut bins = vec![Bin::default(); binning.bins()?];
+        let mut power = vec![0.0; bins.len()];
+        read_sums(&mut bins, &mut power, &sums, binning, 1)?;
+        Ok((bins, power))
     }
 
     /// The modes of f(x) g(x), free of aliasing.
@@ -143,12 +150,14 @@ impl Universe {
 
     /// The bins: mean k in h/Mpc, modes counting k and -k, and V <|delta_k|^2> in (Mpc/h)^3.
     pub(crate) fn power(&self, density: &[f64]) -> Result<(Vec<f64>, Vec<u64>, Vec<f64>), Failure> {
-        let bins = self.bins(&self.edges, density, None)?;
-        let (unit, volume) = (std::f64::consts::TAU / self.length, self.length.powi(3));
+        let binning = Binning::shells(&self.edges);
+        let (bins, mut power) = self.sums(&binning, density, density)?;
+        normalise(&mut power, &bins, binning.orders, self.length.powi(3))?;
+        let unit = std::f64::consts::TAU / self.length;
         Ok((
-            bins.iter().map(|bin| unit * bin.wavenumber / bin.modes as f64).collect(),
-            bins.iter().map(|bin| bin.modes).collect(),
-            bins.iter().map(|bin| volume * bin.power / bin.modes as f64).collect(),
+            bins.iter().map(|bin| unit * bin.first).collect(),
+            bins.iter().map(|bin| bin.count).collect(),
+            power,
         ))
     }
 

@@ -7,9 +7,10 @@
     reason = "the text is that of the header"
 )]
 
+pub mod binning;
 pub mod built_in;
+pub mod correlation;
 pub mod cosmology;
-pub mod estimate;
 pub mod exec;
 pub mod fft;
 pub mod initial;
@@ -18,6 +19,7 @@ pub mod mode_table;
 pub mod noise;
 pub mod particles;
 pub mod pm;
+pub mod power;
 pub mod stages;
 pub mod status;
 

@@ -46,6 +46,20 @@ impl ExactSum {
         unsafe { core::slice::from_raw_parts_mut(sums.as_mut_ptr().cast::<Self>(), sums.len()) }
     }
 
+    /// As [`ExactSum::in_words`], to read.
+    #[must_use]
+    pub const fn of_words(words: &[i64]) -> &[Self] {
+        let (sums, _) = words.as_chunks::<{ Self::WORDS }>();
+        // SAFETY: a sum is WORDS integers, with their alignment and without padding.
+        unsafe { core::slice::from_raw_parts(sums.as_ptr().cast::<Self>(), sums.len()) }
+    }
+
+    /// Was a term NaN, infinite or beyond 2^660?
+    #[must_use]
+    pub const fn is_lost(&self) -> bool {
+        self.lost != 0
+    }
+
     /// Adds a term. At most [`TERMS`] of them may follow one another without a [`ExactSum::carry`].
     #[inline]
     pub fn add(&mut self, term: f64) {
@@ -77,20 +91,20 @@ impl ExactSum {
     #[inline]
     pub fn merge(&mut self, other: &Self) {
         for (sum, term) in self.value.iter_mut().zip(&other.value) {
-            *sum += term;
+            *sum = sum.wrapping_add(*term);
         }
-        self.lost += other.lost;
+        self.lost = self.lost.wrapping_add(other.lost);
     }
 
     /// Brings the limbs into [0, 2^32), the last one apart: the one form that each value has.
     pub fn carry(&mut self) {
         let mut carry = 0;
         for limb in &mut self.value[..VALUE - 1] {
-            let sum = *limb + carry;
+            let sum = limb.wrapping_add(carry);
             *limb = sum & 0xffff_ffff;
             carry = sum >> 32;
         }
-        self.value[VALUE - 1] += carry;
+        self.value[VALUE - 1] = self.value[VALUE - 1].wrapping_add(carry);
     }
 
     /// The sum, rounded once to the nearest f64; NaN if a term was not finite or too large.
@@ -103,7 +117,7 @@ impl ExactSum {
         sum.carry();
         let negative = sum.value[VALUE - 1] < 0;
         if negative {
-            sum.value.iter_mut().for_each(|limb| *limb = -*limb);
+            sum.value.iter_mut().for_each(|limb| *limb = limb.wrapping_neg());
             sum.carry();
         }
         let Some(top) = sum.value.iter().rposition(|&limb| limb != 0) else {

@@ -1,4 +1,13 @@
-//! Spectra of fields on meshes.
+//! Spectra and correlation functions of fields on meshes.
 
+pub mod binning;
+pub mod compensation;
+pub mod correlation;
+pub mod edges;
 pub mod exact;
+mod line;
 pub mod power;
+mod sweep;
+
+#[cfg(test)]
+mod tests;

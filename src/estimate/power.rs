@@ -1,197 +1,246 @@
-//! The power spectrum of modes.
+//! The power spectrum of modes, its multipoles and its wedges.
 //!
-//! P(k) = V <|f_k|^2> for modes with f(x) = sum_k f_k exp(+i k.x) in a box of volume V; the cross spectrum is V <Re f_k g_k*>.
-//! Bins are given by integers |n|^2, so that no mode lies on an edge by rounding: bin b holds `edge[b] <= |n|^2 < edge[b+1]`.
-//! N_modes counts both k and -k: 26, 66, 158, 234, 410, 470 for the unit shells b^2 <= |n|^2 < (b+1)^2, b = 1..6.
+//! P(k) = V <|f_k|^2> for modes with f(x) = sum_k f_k exp(+i k.x) in a box of volume V; the cross spectrum of f and g is V <f_k g_k*>, and
+//!     P_l(k) = (2l + 1) V <f_k g_k* L_l(k.a/|k|)>
+//! about a line of sight a (Kaiser 1987; Cole, Fisher & Weinberg 1994). The mean runs over k and -k, so that even multipoles are real, and odd
+//! ones imaginary: there the sums hold Im f g* L_l, and P_l is i times the result. Its sign: where g is f moved by a small step along +a,
+//! f g* = |f|^2 exp(+i k.d), and the dipole is positive.
+//!
+//! N_modes counts both k and -k: 26, 66, 158, 234, 410, 470 for the unit shells b^2 <= |n|^2 < (b+1)^2, b = 1..6. Modes of the plane
+//! l = n/2, and of n/2 on other axes, count as +n/2 in mu. Nothing is subtracted and nothing normalised: see [`normalise`](super::binning::normalise),
+//! [`shot_noise`] and [`subtract_shot_noise`].
+//!
+//! Bricks that leave axis 2 whole (all slabs) add up to the bits of the whole mesh, in every memory layout; pencils that cut axis 2 agree
+//! to rounding, because a run of modes is cut where they end.
 
-use crate::exec::{Exec, Shared};
+use super::binning::{Bin, Binning, check_values, order_numbers};
+use super::compensation::Compensation;
+use super::sweep::{Source, sweep, sweep_scratch, weights};
+use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::scratch::{Arena, Layout};
+use crate::simd::Simd;
 use crate::status::{Error, Result};
-use crate::walk::{chunks, runs};
 
-/// Raw sums of one bin.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C)]
-pub struct Bin {
-    /// Modes, counting k and -k; 0 where no mode falls into the bin.
-    pub modes: u64,
-    /// Sum of |n| over them: times (2 pi/L)/modes it is the mean k.
-    pub wavenumber: f64,
-    /// Sum of Re f_k g_k* over them: times V/modes it is P(k).
-    pub power: f64,
-}
-
-/// Scratch of [`power_sums`]: the bins of each chunk, and the bin of each |n|^2 up to the last edge.
+/// Scratch of [`power_sums`] for `pairs` pairs of fields. At most 64 sets of partial sums, or 64 MiB of them (two sets if one is more), 4 bytes for
+/// each |n|^2 up to the last edge, 4 for each square of (i, j), and a few rows for each pair and set.
 ///
 /// # Errors
-/// `Brick` for a brick of configuration space, `Table` if the edges are not increasing, `Overflow` if the bytes do not fit the address space.
-pub fn power_sums_scratch(brick: &Brick, edges: &[u64]) -> Result<Layout> {
+/// `Brick` for a brick of configuration space; else as [`Binning::words`].
+pub fn power_sums_scratch(brick: &Brick, binning: &Binning<'_>, pairs: usize) -> Result<Layout> {
     brick.check_space(Space::Fourier)?;
-    check_edges(edges)?;
-    let bins = edges.len() - 1;
-    let cells = chunks(brick).checked_mul(bins).ok_or(Error::Overflow)?;
-    Layout::EMPTY.and::<[f64; 3]>(cells)?.and::<u32>(lookup_length(brick, edges)?)
+    let factors = factors_layout(brick, pairs)?;
+    let sweep = sweep_scratch(brick, &binning.check()?, pairs)?;
+    factors.and::<u8>(sweep.size)
 }
 
-fn check_edges(edges: &[u64]) -> Result<()> {
-    let increasing = edges.windows(2).all(|pair| pair[0] < pair[1]);
-    if edges.len() < 2 || !increasing || u32::try_from(edges.len()).is_err() {
-        Err(Error::Table)
-    } else {
-        Ok(())
-    }
+fn factors_layout(brick: &Brick, pairs: usize) -> Result<Layout> {
+    let axis = pairs.checked_mul(brick.n() / 2 + 1).ok_or(Error::Overflow)?;
+    let row = pairs.checked_mul(brick.count()[2]).ok_or(Error::Overflow)?;
+    Layout::EMPTY.and::<f64>(axis)?.and::<f64>(row)
 }
 
-/// |n|^2 beyond the mesh's corner need no entry.
-fn lookup_length(brick: &Brick, edges: &[u64]) -> Result<usize> {
-    let half = brick.n() as u64 / 2;
-    let corner = 3 * half * half + 1;
-    usize::try_from(edges[edges.len() - 1].min(corner)).map_err(|_| Error::Overflow)
-}
-
-/// Sums |f_k|^2, or Re f_k g_k* where a second field is given, over the modes of a brick, bin by bin.
+/// Adds f_k g_k* L_l, summed over the modes of a brick bin by bin, to `sums`, for several pairs (f, g) of fields in one sweep.
 ///
-/// `bins`: one fewer than `edges`, overwritten; add the bins of other bricks of the same mesh to get the whole mesh's.
-/// `edges`: increasing values of |n|^2, n = k L/(2 pi).
+/// `sums`: [`Binning::words`] integers, zero at first; [`read_sums`](super::binning::read_sums) turns them into bins. `fields`: modes on the Fourier `brick`.
+/// `pairs`: numbers of fields: `[0, 0]` for the spectrum of the first, `[0, 1]` for its cross spectrum with the second. `compensation`:
+/// one for each field.
 ///
 /// # Errors
-/// `Table` for edges that are not increasing, `Brick` for a brick of configuration space, `Length`, `Scratch`, `Alignment`;
-/// `NotFinite` if a sum is NaN or infinite (the bins are then untouched).
+/// `Brick` for a brick of configuration space, `Length` for arrays of other lengths, `Range` for a pair of a field that there is not, as
+/// [`Binning::words`] for the binning, `Scratch`, `Alignment`, `Hook`; nothing is then added. A NaN or an infinite product shows in `read_sums`.
 ///
-/// Cost: one pass over each field; sums in f64 in an order that does not depend on threads.
+/// Cost: one pass over each field for each pair it is in (its row stays in cache).
 pub fn power_sums<T: Real>(
-    bins: &mut [Bin],
-    edges: &[u64],
-    f: &[T],
-    g: Option<&[T]>,
+    sums: &mut [i64],
+    fields: &[&[T]],
+    pairs: &[[usize; 2]],
+    compensation: &[Compensation],
     brick: &Brick,
+    binning: &Binning<'_>,
     scratch: &mut [u8],
     exec: &dyn Exec,
 ) -> Result<()> {
-    brick.check_space(Space::Fourier)?;
-    let g = g.unwrap_or(f);
-    brick.check_length(f)?;
-    brick.check_length(g)?;
-    let layout = power_sums_scratch(brick, edges)?;
-    let count = edges.len() - 1;
-    if bins.len() != count {
-        return Err(Error::Length);
-    }
-    let mut arena = Arena::new(scratch, layout)?;
-    let partial = arena.take::<[f64; 3]>(chunks(brick) * count)?;
-    let lookup = arena.take::<u32>(lookup_length(brick, edges)?)?;
-    partial.fill([0.0; 3]);
-    let mut bin = 0;
-    for (square, entry) in lookup.iter_mut().enumerate() {
-        while bin < edges.len() && edges[bin] <= square as u64 {
-            bin += 1;
-        }
-        // Entry 0 is below the first edge; the last edge is beyond the table.
-        *entry = bin as u32;
-    }
-    let lookup = &*lookup;
-    {
-        let shared = Shared::new(partial);
-        exec.parallel_for(chunks(brick), &|chunk| {
-            // SAFETY: each chunk has `count` entries of its own and runs once.
-            let sums = unsafe { shared.part(chunk * count, count) };
-            runs(brick, chunk, |run| {
-                let (x, y) = (Brick::mode(brick.n(), run.index[0]), Brick::mode(brick.n(), run.index[1]));
-                let square = (x * x + y * y) as usize;
-                let at = 2 * run.offset..2 * (run.offset + run.length);
-                let pairs = f[at.clone()].chunks_exact(2).zip(g[at].chunks_exact(2));
-                for (m, (f, g)) in pairs.enumerate() {
-                    let z = run.index[2] + m;
-                    let square = square + z * z;
-                    let bin = lookup.get(square).map_or(0, |&bin| bin as usize);
-                    if bin > 0 {
-                        // The planes l = 0 and l = n/2 hold both members of each pair, the others one.
-                        let weight = if z == 0 || 2 * z == brick.n() { 1.0 } else { 2.0 };
-                        let product = f[0].to_f64() * g[0].to_f64() + f[1].to_f64() * g[1].to_f64();
-                        let sum = &mut sums[bin - 1];
-                        sum[0] += weight;
-                        sum[1] += weight * libm::sqrt(square as f64);
-                        sum[2] += weight * product;
-                    }
-                }
-            });
-        })?;
-    }
-    let total = |bin: usize| {
-        partial
-            .chunks_exact(count)
-            .fold([0.0; 3], |sum, chunk| core::array::from_fn(|i| sum[i] + chunk[bin][i]))
-    };
-    if (0..count).any(|bin| !total(bin)[2].is_finite()) {
-        return Err(Error::NotFinite);
-    }
-    for (i, bin) in bins.iter_mut().enumerate() {
-        let [modes, wavenumber, power] = total(i);
-        *bin = Bin { modes: modes as u64, wavenumber, power };
-    }
-    Ok(())
+    power_sums_on(sums, fields, pairs, compensation, brick, binning, scratch, exec, Simd::detect())
 }
 
-#[cfg(test)]
-mod tests {
-    use std::vec;
-    use std::vec::Vec;
-
-    use super::*;
-    use crate::exec::{Serial, Threads};
-
-    fn unit_shells(count: u64) -> Vec<u64> {
-        (1..=count + 1).map(|b| b * b).collect()
+/// [`power_sums`] on a given code path.
+pub(super) fn power_sums_on<T: Real>(
+    sums: &mut [i64],
+    fields: &[&[T]],
+    pairs: &[[usize; 2]],
+    compensation: &[Compensation],
+    brick: &Brick,
+    binning: &Binning<'_>,
+    scratch: &mut [u8],
+    exec: &dyn Exec,
+    simd: Simd,
+) -> Result<()> {
+    let layout = power_sums_scratch(brick, binning, pairs.len())?;
+    for field in fields {
+        brick.check_length(field)?;
     }
-
-    fn sums(f: &[f64], brick: &Brick, edges: &[u64], exec: &dyn Exec) -> Result<Vec<Bin>> {
-        let mut scratch = vec![0_u8; power_sums_scratch(brick, edges)?.size + 64];
-        let skip = scratch.as_ptr().align_offset(64);
-        let mut bins = vec![Bin::default(); edges.len() - 1];
-        power_sums(&mut bins, edges, f, None, brick, &mut scratch[skip..], exec)?;
-        Ok(bins)
+    if compensation.len() != fields.len() {
+        return Err(Error::Length);
     }
-
-    #[test]
-    fn unit_shells_hold_the_published_numbers_of_modes() {
-        let brick = Brick::whole(16, Space::Fourier).unwrap();
-        let bins = sums(&vec![1.0; brick.reals()], &brick, &unit_shells(6), &Serial).unwrap();
-        assert_eq!(bins.iter().map(|b| b.modes).collect::<Vec<_>>(), [26, 66, 158, 234, 410, 470]);
-        assert!(bins.iter().all(|b| b.power == 2.0 * b.modes as f64));
+    if pairs.as_flattened().iter().any(|&field| field >= fields.len()) {
+        return Err(Error::Range);
     }
-
-    #[test]
-    fn layouts_and_threads_give_the_same_modes() {
-        let whole = Brick::whole(12, Space::Fourier).unwrap();
-        let field: Vec<f64> = (0..whole.reals()).map(|i| libm::sin(i as f64)).collect();
-        let edges = unit_shells(5);
-        let one = sums(&field, &whole, &edges, &Serial).unwrap();
-        for threads in [2, 5] {
-            assert_eq!(sums(&field, &whole, &edges, &Threads::new(threads).unwrap()).unwrap(), one);
+    let mut arena = Arena::new(scratch, layout)?;
+    let (half, length) = (brick.n() / 2 + 1, brick.count()[2]);
+    let factor = arena.take::<f64>(pairs.len() * half)?;
+    let along = arena.take::<f64>(pairs.len() * length)?;
+    let checked = binning.check()?;
+    let rest = arena.take::<u8>(sweep_scratch(brick, &checked, pairs.len())?.size)?;
+    for ((pair, factor), along) in
+        pairs.iter().zip(factor.chunks_exact_mut(half)).zip(along.chunks_exact_mut(length.max(1)))
+    {
+        for (m, factor) in factor.iter_mut().enumerate() {
+            let [f, g] = pair.map(|field| compensation[field].factor(m, brick.n()));
+            *factor = f * g;
         }
-        let mut added = vec![Bin::default(); 5];
-        for x in 0..12 {
-            let slab = Brick::slab(12, Space::Fourier, x, 1).unwrap();
-            let part = &field[x * whole.stride()[0] * 2..][..slab.reals()];
-            for (sum, bin) in added.iter_mut().zip(sums(part, &slab, &edges, &Serial).unwrap()) {
-                sum.modes += bin.modes;
-                sum.wavenumber += bin.wavenumber;
-                sum.power += bin.power;
+        weights(brick, along);
+        for (along, factor) in along.iter_mut().zip(&factor[brick.start()[2]..]) {
+            *along *= factor;
+        }
+    }
+    let modes = Modes { fields, pairs, factor, along, brick };
+    sweep(sums, brick, &checked, &modes, rest, exec, simd)
+}
+
+/// Pairs of fields of modes.
+struct Modes<'a, T> {
+    fields: &'a [&'a [T]],
+    pairs: &'a [[usize; 2]],
+    /// Compensation of each pair along an axis, by |n_a|.
+    factor: &'a [f64],
+    /// The same along the row, times the weight.
+    along: &'a [f64],
+    brick: &'a Brick,
+}
+
+impl<T: Real> Source for Modes<'_, T> {
+    fn spectra(&self) -> usize {
+        self.pairs.len()
+    }
+
+    #[inline(always)]
+    fn row(
+        &self,
+        spectrum: usize,
+        index: [usize; 2],
+        offset: usize,
+        even: &mut [f64],
+        odd: &mut [f64],
+        with_odd: bool,
+    ) {
+        let n = self.brick.n();
+        let factor = &self.factor[spectrum * (n / 2 + 1)..][..n / 2 + 1];
+        let [x, y] = index.map(|index| factor[Brick::mode(n, index).unsigned_abs() as usize]);
+        let across = x * y;
+        let length = self.brick.count()[2];
+        let along = &self.along[spectrum * length..][..even.len()];
+        let [f, g] = self.pairs[spectrum].map(|field| self.fields[field]);
+        let stride = self.brick.stride()[2];
+        if stride == 1 {
+            let range = 2 * offset..2 * (offset + even.len());
+            let (f, g) = (f[range.clone()].as_chunks::<2>().0, g[range].as_chunks::<2>().0);
+            for (((even, f), g), along) in even.iter_mut().zip(f).zip(g).zip(along) {
+                *even = real_part(f, g) * (across * along);
+            }
+            if with_odd {
+                for (((odd, f), g), along) in odd.iter_mut().zip(f).zip(g).zip(along) {
+                    *odd = imaginary_part(f, g) * (across * along);
+                }
+            }
+        } else {
+            for m in 0..even.len() {
+                let at = 2 * (offset + m * stride);
+                let (f, g) = (&[f[at], f[at + 1]], &[g[at], g[at + 1]]);
+                even[m] = real_part(f, g) * (across * along[m]);
+                odd[m] = imaginary_part(f, g) * (across * along[m]);
             }
         }
-        assert_eq!(added, one, "slabs of one plane are the chunks of the whole mesh");
     }
+}
 
-    #[test]
-    fn bad_edges_and_fields_are_refused() {
-        let brick = Brick::whole(4, Space::Fourier).unwrap();
-        let mut field = vec![0.0; brick.reals()];
-        assert_eq!(sums(&field, &brick, &[1], &Serial), Err(Error::Table));
-        assert_eq!(sums(&field, &brick, &[4, 4], &Serial), Err(Error::Table));
-        assert_eq!(sums(&field[1..], &brick, &[1, 4], &Serial), Err(Error::Length));
-        field[2] = f64::NAN;
-        assert_eq!(sums(&field, &brick, &[1, 4], &Serial), Err(Error::NotFinite));
+#[inline(always)]
+fn real_part<T: Real>(f: &[T; 2], g: &[T; 2]) -> f64 {
+    f[0].to_f64() * g[0].to_f64() + f[1].to_f64() * g[1].to_f64()
+}
+
+#[inline(always)]
+fn imaginary_part<T: Real>(f: &[T; 2], g: &[T; 2]) -> f64 {
+    f[1].to_f64() * g[0].to_f64() - f[0].to_f64() * g[1].to_f64()
+}
+
+/// The shot noise of particles in a box of side L: V sum w^2/(sum w)^2, V/N without weights, in (Mpc/h)^3 for L in Mpc/h.
+///
+/// `weights`: one for each particle, or none for equal weights; `particles`: how many there are.
+///
+/// # Errors
+/// `Length` for weights of another number than `particles`; `Range` for a box that is not positive, no particles, or weights that sum to 0;
+/// `NotFinite`.
+pub fn shot_noise<T: Real>(weights: Option<&[T]>, particles: u64, box_size: f64) -> Result<f64> {
+    if !box_size.is_finite() {
+        return Err(Error::NotFinite);
     }
+    if box_size <= 0.0 || particles == 0 {
+        return Err(Error::Range);
+    }
+    let volume = box_size * box_size * box_size;
+    let Some(weights) = weights else { return Ok(volume / particles as f64) };
+    if weights.len() as u64 != particles {
+        return Err(Error::Length);
+    }
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for weight in weights.iter().map(|weight| weight.to_f64()) {
+        sum += weight;
+        squares += weight * weight;
+    }
+    let noise = volume * squares / (sum * sum);
+    match (sum == 0.0, noise.is_finite()) {
+        (true, _) => Err(Error::Range),
+        (_, false) => Err(Error::NotFinite),
+        _ => Ok(noise),
+    }
+}
+
+/// Subtracts shot noise from the monopoles of auto spectra, in place: P_0 <- P_0 - noise where a bin is not empty. Cross spectra and other
+/// multipoles have none and stay as they are.
+///
+/// `values`: spectra of `pairs`, normalised; `noise`: of each field. Flat noise is what meshes have that are compensated by
+/// [`Compensation::Aliased`], and interlaced ones by [`Compensation::Window`] well below the Nyquist frequency.
+///
+/// # Errors
+/// As [`normalise`](super::binning::normalise); `Length` if there are not as many spectra as pairs, `Range` for a pair of a field without noise.
+pub fn subtract_shot_noise(
+    values: &mut [f64],
+    pairs: &[[usize; 2]],
+    bins: &[Bin],
+    orders: u32,
+    noise: &[f64],
+) -> Result<()> {
+    let multipoles = check_values(values, bins, orders)?;
+    if values.len() / (multipoles * bins.len()) != pairs.len() {
+        return Err(Error::Length);
+    }
+    if pairs.as_flattened().iter().any(|&field| field >= noise.len()) {
+        return Err(Error::Range);
+    }
+    if noise.iter().any(|noise| !noise.is_finite()) {
+        return Err(Error::NotFinite);
+    }
+    if order_numbers(orders).next() != Some(0) {
+        return Ok(());
+    }
+    for (values, pair) in values.chunks_exact_mut(multipoles * bins.len()).zip(pairs) {
+        if pair[0] == pair[1] {
+            for (values, bin) in values.chunks_exact_mut(multipoles).zip(bins) {
+                values[0] -= if bin.count > 0 { noise[pair[0]] } else { 0.0 };
+            }
+        }
+    }
+    Ok(())
 }

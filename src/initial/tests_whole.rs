@@ -12,7 +12,9 @@ use crate::cosmology::{
     Convention, Cosmology, EisensteinHu, Linear, Wiggles, alpha_table, mode_table_length,
     potential_amplitude_table,
 };
-use crate::estimate::power::{Bin, power_sums, power_sums_scratch};
+use crate::estimate::binning::{Bin, Binning, read_sums};
+use crate::estimate::compensation::Compensation;
+use crate::estimate::power::{power_sums, power_sums_scratch};
 use crate::exec::{Exec, Serial, Threads};
 use crate::fft::Fft3;
 use crate::noise::{Amplitude, Phase, Realisation};
@@ -65,12 +67,22 @@ fn density<T: Real>(n: usize, realisation: Realisation, f_nl: f64) -> Vec<T> {
     out
 }
 
-fn bins<T: Real>(n: usize, modes: &[T], edges: &[u64]) -> Vec<Bin> {
+/// Modes and sums of Re f_k g_k* in shells.
+fn shells<T: Real>(n: usize, f: &[T], g: &[T], edges: &[u64]) -> Vec<(u64, f64)> {
     let brick = *serial::<T>(n).fourier();
-    let mut bins = vec![Bin::default(); edges.len() - 1];
-    let scratch = memory(power_sums_scratch(&brick, edges).unwrap());
-    power_sums(&mut bins, edges, modes, None, &brick, scratch, &Serial).unwrap();
-    bins
+    let binning = Binning::shells(edges);
+    let mut sums = vec![0; binning.words(1).unwrap()];
+    let scratch = memory(power_sums_scratch(&brick, &binning, 1).unwrap());
+    let none = [Compensation::None; 2];
+    power_sums(&mut sums, &[f, g], &[[0, 1]], &none, &brick, &binning, scratch, &Serial).unwrap();
+    let mut bins = vec![Bin::default(); binning.bins().unwrap()];
+    let mut power = vec![0.0; bins.len()];
+    read_sums(&mut bins, &mut power, &sums, &binning, 1).unwrap();
+    bins.iter().zip(power).map(|(bin, power)| (bin.count, power)).collect()
+}
+
+fn bins<T: Real>(n: usize, modes: &[T], edges: &[u64]) -> Vec<(u64, f64)> {
+    shells(n, modes, modes, edges)
 }
 
 #[test]
@@ -89,16 +101,16 @@ fn fixed_field_has_exactly_the_input_power() {
         let double = bins(n, &density::<f64>(n, realisation(3, Amplitude::Fixed, phase), 0.0), &edges);
         let single = bins(n, &density::<f32>(n, realisation(3, Amplitude::Fixed, phase), 0.0), &edges);
         for ((bin, double), single) in expected.iter().zip(double).zip(single) {
-            assert_eq!(bin.modes, double.modes);
+            assert_eq!(bin.0, double.0);
             // |w| = 1 and two products: a few roundings.
-            assert!((double.power / bin.power - 1.0).abs() < 4.0 * f64::EPSILON);
-            assert!((single.power / bin.power - 1.0).abs() < 4.0 * f64::from(f32::EPSILON));
+            assert!((double.1 / bin.1 - 1.0).abs() < 4.0 * f64::EPSILON);
+            assert!((single.1 / bin.1 - 1.0).abs() < 4.0 * f64::from(f32::EPSILON));
         }
     }
     let mean =
         bins(n, &density::<f64>(n, realisation(3, Amplitude::FixedToMean, Phase::Original), 0.0), &edges);
     for (bin, mean) in expected.iter().zip(mean) {
-        assert!((mean.power / bin.power / core::f64::consts::FRAC_PI_4 - 1.0).abs() < 1e-14);
+        assert!((mean.1 / bin.1 / core::f64::consts::FRAC_PI_4 - 1.0).abs() < 1e-14);
     }
 }
 
@@ -112,7 +124,7 @@ fn normal_field_scatters_about_the_input_power() {
     let ratios: Vec<f64> = (1..=16)
         .map(|seed| {
             let normal = density::<f64>(n, realisation(seed, Amplitude::Normal, Phase::Original), 0.0);
-            bins(n, &normal, &edges)[0].power / fixed.power
+            bins(n, &normal, &edges)[0].1 / fixed.1
         })
         .collect();
     let (mean, error) = mean_and_error(&ratios);
@@ -216,12 +228,8 @@ impl Skewness {
 
 /// sum_k Re f_k g_k* over all modes but the mean.
 fn inner(n: usize, f: &[f64], g: &[f64]) -> f64 {
-    let brick = *serial::<f64>(n).fourier();
     let edges = [1, mode_table_length(n).unwrap() as u64];
-    let mut bin = [Bin::default()];
-    let scratch = memory(power_sums_scratch(&brick, &edges).unwrap());
-    power_sums(&mut bin, &edges, f, Some(g), &brick, scratch, &Serial).unwrap();
-    bin[0].power
+    shells(n, f, g, &edges)[0].1
 }
 
 #[test]

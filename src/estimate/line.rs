@@ -1,0 +1,255 @@
+//! One row of points along axis 2: their bins, their angles, and their sums over runs.
+//!
+//! A *run* is a stretch of a row whose points fall into one bin. Its sum is a plain f64 sum in the order of the row, and is what is added exactly to
+//! the bin; rows are never cut by slabs of x or y, so the bits of a bin depend on the mesh alone. No branch depends on where runs end: a mask
+//! restarts the sum, so that runs of one or two points (unit shells) cost no mispredicted jump.
+
+use super::binning::{Checked, Second};
+use crate::math;
+use crate::scratch::{Arena, Layout};
+use crate::status::Result;
+
+/// What is the same for all rows of a brick.
+pub(super) struct Lines<'a> {
+    pub(super) checked: Checked<'a>,
+    /// The range of the first coordinate by its square, counted from 1; 0 is outside.
+    pub(super) lookup: &'a [u32],
+    /// Edges of the second coordinate, squared.
+    pub(super) thresholds: &'a [f64],
+    /// Signed n_z and its square.
+    pub(super) z: &'a [f64],
+    pub(super) z_square: &'a [u64],
+    /// How many points of the whole mesh each point stands for.
+    pub(super) weight: &'a [f64],
+    /// n_z^2 increases along the row.
+    pub(super) increasing: bool,
+}
+
+/// Where a row lies: n_x^2 + n_y^2 and n_x a_x + n_y a_y.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub(super) square: u64,
+    pub(super) across: f64,
+}
+
+/// Work space of one row.
+pub(super) struct Line<'a> {
+    /// All ones where a point goes on with the run before it, else 0.
+    keep: &'a mut [u64],
+    bin: &'a mut [u32],
+    /// Bin of each run, counted from 1 (0 is outside); runs too count from 1.
+    run_bin: &'a mut [u32],
+    pub(super) runs: &'a mut [[f64; 4]],
+    /// mu^2 and mu, where multipoles or wedges need them.
+    mu_square: &'a mut [f64],
+    mu: &'a mut [f64],
+    pub(super) even: &'a mut [f64],
+    pub(super) odd: &'a mut [f64],
+}
+
+impl<'a> Line<'a> {
+    pub(super) fn layout(layout: Layout, length: usize) -> Result<Layout> {
+        let layout = layout.and::<u64>(length)?.and::<u32>(length)?.and::<u32>(length + 1)?;
+        let layout = layout.and::<[f64; 4]>(length + 1)?;
+        layout.and::<f64>(length)?.and::<f64>(length)?.and::<f64>(length)?.and::<f64>(length)
+    }
+
+    pub(super) fn take(arena: &mut Arena<'a>, length: usize) -> Result<Self> {
+        let line = Self {
+            keep: arena.take(length)?,
+            bin: arena.take(length)?,
+            run_bin: arena.take(length + 1)?,
+            runs: arena.take(length + 1)?,
+            mu_square: arena.take(length)?,
+            mu: arena.take(length)?,
+            even: arena.take(length)?,
+            odd: arena.take(length)?,
+        };
+        // Where no angle is needed it is multiplied by 0 and must be a number.
+        line.mu_square.fill(0.0);
+        line.mu.fill(0.0);
+        Ok(line)
+    }
+
+    /// Calls `add(bin, sums)` for each run inside a bin.
+    #[inline(always)]
+    pub(super) fn for_each_run(&self, runs: usize, mut add: impl FnMut(usize, &[f64; 4])) {
+        for (&bin, sums) in self.run_bin[1..=runs].iter().zip(&self.runs[1..=runs]) {
+            if bin > 0 {
+                add(bin as usize - 1, sums);
+            }
+        }
+    }
+
+    /// Sums `even` times polynomials in mu^2, lane by lane and run by run.
+    #[inline(always)]
+    pub(super) fn sum_even(&mut self, points: usize, lanes: &[[f64; 4]; 3]) {
+        sum_runs(self.runs, &self.keep[..points], &self.mu_square[..points], &self.even[..points], lanes);
+    }
+
+    /// Sums `odd` times mu times polynomials in mu^2.
+    #[inline(always)]
+    pub(super) fn sum_odd(&mut self, points: usize, lanes: &[[f64; 4]; 3]) {
+        for (value, mu) in self.odd[..points].iter_mut().zip(&self.mu[..points]) {
+            *value *= mu;
+        }
+        sum_runs(self.runs, &self.keep[..points], &self.mu_square[..points], &self.odd[..points], lanes);
+    }
+}
+
+/// Adds up `value (c0 + mu^2 (c2 + mu^2 c4))` in four lanes; a point that is not kept begins the next run.
+#[inline(always)]
+fn sum_runs(
+    runs: &mut [[f64; 4]],
+    keep: &[u64],
+    mu_square: &[f64],
+    value: &[f64],
+    [c0, c2, c4]: &[[f64; 4]; 3],
+) {
+    let mut sum = [0.0_f64; 4];
+    let mut run = 0;
+    for ((&keep, &m), &value) in keep.iter().zip(mu_square).zip(value) {
+        run += usize::from(keep == 0);
+        for lane in 0..4 {
+            let term = value * (c0[lane] + m * (c2[lane] + m * c4[lane]));
+            sum[lane] = f64::from_bits(sum[lane].to_bits() & keep) + term;
+        }
+        runs[run] = sum;
+    }
+}
+
+impl Lines<'_> {
+    fn multipoles(&self) -> bool {
+        self.checked.orders != 1
+    }
+
+    /// Finds the bins of a row: returns the points that can lie in one (all others come after them) and their runs.
+    #[inline(always)]
+    pub(super) fn bins(&self, place: Place, line: &mut Line<'_>) -> (usize, usize) {
+        let mut points = self.z.len();
+        if self.increasing && !matches!(self.checked.second, Second::Parallel(_)) {
+            let end = self.lookup.len() as u64;
+            points = self.z_square.partition_point(|zz| place.square + zz < end);
+        }
+        if points == 0 {
+            return (0, 0);
+        }
+        let z_square = &self.z_square[..points];
+        if self.multipoles() || matches!(self.checked.second, Second::Cosine(_)) {
+            self.angles(place, line, points);
+        }
+        let bins = &mut line.bin[..points];
+        let at = |square: u64| self.lookup.get(square as usize).copied().unwrap_or(0);
+        match self.checked.second {
+            Second::None => {
+                for (bin, zz) in bins.iter_mut().zip(z_square) {
+                    *bin = at(place.square + zz);
+                }
+            }
+            Second::Cosine(_) => {
+                let mut range = 0;
+                for ((bin, zz), &mu) in bins.iter_mut().zip(z_square).zip(&line.mu_square[..points]) {
+                    range = self.hunt(range, mu);
+                    *bin = self.joined(at(place.square + zz), range);
+                }
+            }
+            Second::Parallel(_) => {
+                let mut range = 0;
+                for ((bin, &zz), z) in bins.iter_mut().zip(z_square).zip(self.z) {
+                    let (perpendicular, parallel) = self.split(place, zz, *z);
+                    range = self.hunt(range, parallel * parallel);
+                    let square = (place.square + zz) as f64;
+                    *bin = self.joined(at((perpendicular + 1e-12 * square) as u64), range);
+                }
+            }
+        }
+        let mut last = !bins[0];
+        let mut runs = 0;
+        for (&bin, keep) in bins.iter().zip(line.keep.iter_mut()) {
+            *keep = u64::from(bin != last).wrapping_sub(1);
+            runs += usize::from(bin != last);
+            line.run_bin[runs] = bin;
+            last = bin;
+        }
+        (points, runs)
+    }
+
+    #[inline(always)]
+    fn angles(&self, place: Place, line: &mut Line<'_>, points: usize) {
+        let along = self.checked.axis[2];
+        let square = place.square as f64;
+        for (mu, &z) in line.mu_square[..points].iter_mut().zip(self.z) {
+            let parallel = place.across + along * z;
+            // n = 0 has mu = 0; all other squares are 1 or more.
+            let square = square + z * z;
+            *mu = parallel * parallel / if square < 1.0 { 1.0 } else { square };
+        }
+        if self.checked.orders & 0b1010 != 0 {
+            for (mus, zs) in line.mu[..points].chunks_mut(4).zip(self.z.chunks(4)) {
+                let mut length = [1.0; 4];
+                for (length, z) in length.iter_mut().zip(zs) {
+                    let square = square + z * z;
+                    *length = if square < 1.0 { 1.0 } else { square };
+                }
+                math::sqrt_in_place(&mut length);
+                for ((mu, z), length) in mus.iter_mut().zip(zs).zip(length) {
+                    *mu = (place.across + along * z) / length;
+                }
+            }
+        }
+    }
+
+    /// n_perp^2 and n.a.
+    #[inline(always)]
+    fn split(&self, place: Place, z_square: u64, z: f64) -> (f64, f64) {
+        let parallel = place.across + self.checked.axis[2] * z;
+        let rest = (place.square + z_square) as f64 - parallel * parallel;
+        (if rest > 0.0 { rest } else { 0.0 }, parallel)
+    }
+
+    /// How many thresholds do not exceed `value`, from a guess nearby.
+    #[inline(always)]
+    fn hunt(&self, mut range: usize, value: f64) -> usize {
+        while self.thresholds.get(range).is_some_and(|&next| next <= value) {
+            range += 1;
+        }
+        while range > 0 && self.thresholds[range - 1] > value {
+            range -= 1;
+        }
+        range
+    }
+
+    /// The bin of ranges of both coordinates, all counted from 1.
+    #[inline(always)]
+    fn joined(&self, first: u32, second: usize) -> u32 {
+        let ranges = self.checked.ranges as u32;
+        let inside = first > 0 && second > 0 && second <= self.checked.ranges;
+        if inside { (first - 1) * ranges + second as u32 } else { 0 }
+    }
+
+    /// Calls `add(bin, [count, sum of the first coordinate, sum of the second])` for each run inside a bin.
+    pub(super) fn geometry(&self, place: Place, line: &mut Line<'_>, mut add: impl FnMut(usize, [f64; 3])) {
+        let (points, runs) = self.bins(place, line);
+        let mut sum = [0.0_f64; 4];
+        let mut run = 0;
+        for m in 0..points {
+            let square = (place.square + self.z_square[m]) as f64;
+            let (first, second) = match self.checked.second {
+                Second::None => (square, 0.0),
+                Second::Cosine(_) => (square, math::sqrt(line.mu_square[m])),
+                Second::Parallel(_) => {
+                    let (rest, parallel) = self.split(place, self.z_square[m], self.z[m]);
+                    (rest, parallel.abs())
+                }
+            };
+            let weight = self.weight[m];
+            let point = [weight, weight * math::sqrt(first), weight * second, 0.0];
+            run += usize::from(line.keep[m] == 0);
+            for lane in 0..4 {
+                sum[lane] = f64::from_bits(sum[lane].to_bits() & line.keep[m]) + point[lane];
+            }
+            line.runs[run] = sum;
+        }
+        line.for_each_run(runs, |bin, sums| add(bin, [sums[0], sums[1], sums[2]]));
+    }
+}
