@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 12] = [
+const SECTIONS: [(&str, &str); 13] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -16,6 +16,7 @@ const SECTIONS: [(&str, &str); 12] = [
     ("stages", "Initial conditions stage by stage"),
     ("particles", "Particles"),
     ("estimate", "Spectra"),
+    ("bispectrum", "Bispectrum"),
 ];
 
 /// Files outside `src/capi` that define structs of the interface.

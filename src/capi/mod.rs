@@ -7,6 +7,7 @@
     reason = "the text is that of the header"
 )]
 
+pub mod bispectrum;
 pub mod built_in;
 pub mod cosmology;
 pub mod estimate;
