@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 15] = [
+const SECTIONS: [(&str, &str); 16] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -19,6 +19,7 @@ const SECTIONS: [(&str, &str); 15] = [
     ("binning", "Bins of spectra and correlation functions"),
     ("power", "Power spectrum"),
     ("correlation", "Correlation function"),
+    ("bispectrum", "Bispectrum"),
 ];
 
 /// Files outside `src/capi` that define structs of the interface.

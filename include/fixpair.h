@@ -190,6 +190,12 @@
  */
 #define FIXPAIR_COMPENSATION_ALIASED 32
 
+/*
+ * 64-bit integers in the sum of one triangle. Sums of parts of a mesh are added integer by integer: MPI_Allreduce with MPI_INT64_T and
+ * MPI_SUM makes those of the whole mesh of them, bit for bit.
+ */
+#define FIXPAIR_BISPECTRUM_WORDS 42
+
 #if !defined(FIXPAIR_NO_THREADS)
 /* The built-in pool of threads; opaque. */
 typedef struct fixpair_threads fixpair_threads;
@@ -1949,6 +1955,336 @@ fixpair_status_t fixpair_correlation_sums_f32(int64_t *sums,
                                               void *scratch,
                                               size_t scratch_len,
                                               const struct fixpair_exec *exec);
+
+/*
+ * Bispectrum
+ * ==========
+ */
+
+/*
+ * How many triangles fixpair_closed_triangles lists.
+ *
+ * Out: count
+ * In:  edges    edges_len increasing values of |n|^2, n = k L/(2 pi): shell s holds the modes edges[s] <= |n|^2 < edges[s+1]
+ *      centres  edges_len - 1 increasing numbers >= 0, or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_TABLE for edges or centres that do not increase, FIXPAIR_ERROR_NOT_FINITE for centres
+ */
+fixpair_status_t fixpair_closed_triangle_count(size_t *count,
+                                               const uint64_t *edges,
+                                               size_t edges_len,
+                                               const double *centres);
+
+/*
+ * Lists all triangles of shells that close: three shells i <= j <= k each, counted from 0, in lexicographic order.
+ *
+ * With centres, one for each shell in any unit, those with c_k <= c_i + c_j (within 1e-9): for shells of one width centred on its multiples, or
+ * counted by their floor, that is k <= i + j counted from 1, and 40 shells close 6350 triangles. Without, all that the modes of some
+ * wave vectors may close: sqrt(edges[k]) <= sqrt(edges[i+1] - 1) + sqrt(edges[j+1] - 1).
+ *
+ * Out: triangles  3 triangles_len numbers, triangles_len from fixpair_closed_triangle_count
+ * In:  edges, centres as fixpair_closed_triangle_count
+ * Returns: 0, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_OVERLAP, or as fixpair_closed_triangle_count
+ */
+fixpair_status_t fixpair_closed_triangles(uint32_t *triangles,
+                                          size_t triangles_len,
+                                          const uint64_t *edges,
+                                          size_t edges_len,
+                                          const double *centres);
+
+/*
+ * Lists the squeezed slice of a shell: (shell, j, j) for j = shell .. shells - 1.
+ *
+ * Out: triangles  3 triangles_len numbers, triangles_len = shells - shell
+ * In:  shell      counted from 0
+ *      shells     how many there are
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_RANGE unless shell < shells
+ */
+fixpair_status_t fixpair_squeezed_triangles(uint32_t *triangles,
+                                            size_t triangles_len,
+                                            size_t shell,
+                                            size_t shells);
+
+/*
+ * Scratch of fixpair_triangle_counts: for 40 shells of 3 k_f, n = 360 and their 6350 triangles 27 MB.
+ *
+ * Out: scratch
+ * In:  triangles, edges, n as fixpair_triangle_counts
+ * Returns: 0, or as fixpair_triangle_counts
+ */
+fixpair_status_t fixpair_triangle_counts_scratch(struct fixpair_layout *scratch,
+                                                 const uint32_t *triangles,
+                                                 size_t triangles_len,
+                                                 const uint64_t *edges,
+                                                 size_t edges_len,
+                                                 size_t n);
+
+/*
+ * Counts, for each triangle, the ordered triples of modes k1, k2, k3, one from each of its shells, with k1 + k2 + k3 = 0. The numbers are exact.
+ *
+ * A mesh knows mode numbers modulo n. Where n is less than the sum of a triangle's three upper radii, triples that close only modulo n are
+ * counted too, as they are summed too by fixpair_bispectrum_sums_f64. Counts depend on nothing but the arguments: keep them.
+ *
+ * Out: counts     triangles_len numbers
+ * In:  triangles  3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
+ *      edges      edges_len increasing values of |n|^2: shell s holds edges[s] <= |n|^2 < edges[s+1]; the last at most (n/2)^2
+ *      n          cells on a side of the mesh
+ *      scratch    scratch_len bytes, see fixpair_triangle_counts_scratch
+ *      exec       or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _MESH_SIZE, _OVERFLOW, _SCRATCH, _HOOK; FIXPAIR_ERROR_TABLE for edges that do not
+ *          increase, FIXPAIR_ERROR_RANGE for edges beyond (n/2)^2 and shells that are not there, FIXPAIR_ERROR_CONVERGENCE
+ *          where rounding errors leave a count in doubt or one exceeds 2^48
+ * Cost: for 40 shells of 3 k_f, n = 360 and 6350 triangles 22 Gflop in double precision
+ */
+fixpair_status_t fixpair_triangle_counts(uint64_t *counts,
+                                         const uint32_t *triangles,
+                                         size_t triangles_len,
+                                         const uint64_t *edges,
+                                         size_t edges_len,
+                                         size_t n,
+                                         void *scratch,
+                                         size_t scratch_len,
+                                         const struct fixpair_exec *exec);
+
+/*
+ * Copies the modes of one shell, lo <= |n|^2 < hi, and makes all others zero. Their inverse transform is what fixpair_bispectrum_sums_f64
+ * takes.
+ *
+ * Out: out    len reals
+ * In:  modes  len reals: modes with delta(x) = sum_k delta_k exp(+i k.x)
+ *      brick  of Fourier space, where both lie, in any layout
+ *      lo, hi edges of the shell; hi at most (n/2)^2
+ *      exec   or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _HOOK, FIXPAIR_ERROR_TABLE unless lo < hi, FIXPAIR_ERROR_RANGE for hi beyond
+ *          (n/2)^2, or why the brick is refused
+ */
+fixpair_status_t fixpair_shell_modes_f64(double *out,
+                                         const double *modes,
+                                         size_t len,
+                                         const struct fixpair_brick *brick,
+                                         uint64_t lo,
+                                         uint64_t hi,
+                                         const struct fixpair_exec *exec);
+
+/* fixpair_shell_modes_f64 in single precision. */
+fixpair_status_t fixpair_shell_modes_f32(float *out,
+                                         const float *modes,
+                                         size_t len,
+                                         const struct fixpair_brick *brick,
+                                         uint64_t lo,
+                                         uint64_t hi,
+                                         const struct fixpair_exec *exec);
+
+/*
+ * Scratch of fixpair_bispectrum_sums_f64. For T triangles, S shells, cells of b = 8 bytes (4 in single precision) and w = 64, or the brick's x
+ * planes if those are fewer: 396 T + 4 S + w (520 S b + 80 T) bytes and a few cache lines.
+ *
+ * Out: scratch
+ * In:  brick          of configuration space
+ *      shells         S
+ *      triangles_len  T
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the brick is refused
+ */
+fixpair_status_t fixpair_bispectrum_sums_scratch_f64(struct fixpair_layout *scratch,
+                                                     const struct fixpair_brick *brick,
+                                                     size_t shells,
+                                                     size_t triangles_len);
+
+/* fixpair_bispectrum_sums_scratch_f64 in single precision. */
+fixpair_status_t fixpair_bispectrum_sums_scratch_f32(struct fixpair_layout *scratch,
+                                                     const struct fixpair_brick *brick,
+                                                     size_t shells,
+                                                     size_t triangles_len);
+
+/*
+ * Adds sum over cells x of D_i(x) D_j(x) D_k(x), for each triangle of a list, to its sum: D_s(x) = sum over the modes k of shell s of
+ * delta_k exp(+i k.x), from fixpair_shell_modes_f64 and the host's inverse transform.
+ *
+ * A sum is FIXPAIR_BISPECTRUM_WORDS integers, zero at first. The sums of x slabs, added integer by integer, are those of the whole mesh bit for
+ * bit. fixpair_bispectrum_values makes numbers of them. In single precision products of three fields vanish below 1e-38 and
+ * overflow above 3e38.
+ *
+ * In/Out: sums     FIXPAIR_BISPECTRUM_WORDS * triangles_len integers
+ * In:     triangles  3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
+ *         fields   shells pointers to len reals each; those of shells that no triangle names may be NULL
+ *         brick    of configuration space, where each field lies; what lies between its rows is not read
+ *         scratch  scratch_len bytes, see fixpair_bispectrum_sums_scratch_f64
+ *         exec     or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _SCRATCH, _HOOK, FIXPAIR_ERROR_RANGE for shells that are not
+ *          there, FIXPAIR_ERROR_NOT_FINITE if a sum is NaN or infinite, or why the brick is refused; sums are untouched by all
+ * Cost: each field is read once; for all triangles of many shells 2 flops for each triangle and cell
+ */
+fixpair_status_t fixpair_bispectrum_sums_f64(int64_t *sums,
+                                             const uint32_t *triangles,
+                                             size_t triangles_len,
+                                             const double *const *fields,
+                                             size_t shells,
+                                             size_t len,
+                                             const struct fixpair_brick *brick,
+                                             void *scratch,
+                                             size_t scratch_len,
+                                             const struct fixpair_exec *exec);
+
+/* fixpair_bispectrum_sums_f64 in single precision. */
+fixpair_status_t fixpair_bispectrum_sums_f32(int64_t *sums,
+                                             const uint32_t *triangles,
+                                             size_t triangles_len,
+                                             const float *const *fields,
+                                             size_t shells,
+                                             size_t len,
+                                             const struct fixpair_brick *brick,
+                                             void *scratch,
+                                             size_t scratch_len,
+                                             const struct fixpair_exec *exec);
+
+/*
+ * Reals in `count` meshes for fixpair_bispectrum_f64: each is fft->length, rounded up to 64 bytes.
+ *
+ * Out: reals
+ * In:  fft
+ *      count
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the hook is refused
+ */
+fixpair_status_t fixpair_bispectrum_meshes_f64(size_t *reals,
+                                               const struct fixpair_fft_f64 *fft,
+                                               size_t count);
+
+/* fixpair_bispectrum_meshes_f64 in single precision. */
+fixpair_status_t fixpair_bispectrum_meshes_f32(size_t *reals,
+                                               const struct fixpair_fft_f32 *fft,
+                                               size_t count);
+
+/*
+ * Scratch of fixpair_bispectrum_f64: that of fixpair_bispectrum_sums_scratch_f64 on the cells of fft, 16 bytes a shell and a few cache lines
+ * more.
+ *
+ * Out: scratch
+ * In:  fft
+ *      shells, triangles_len  how many there are
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the hook is refused
+ */
+fixpair_status_t fixpair_bispectrum_scratch_f64(struct fixpair_layout *scratch,
+                                                const struct fixpair_fft_f64 *fft,
+                                                size_t shells,
+                                                size_t triangles_len);
+
+/* fixpair_bispectrum_scratch_f64 in single precision. */
+fixpair_status_t fixpair_bispectrum_scratch_f32(struct fixpair_layout *scratch,
+                                                const struct fixpair_fft_f32 *fft,
+                                                size_t shells,
+                                                size_t triangles_len);
+
+/*
+ * From modes to the sums of all triangles of a list: what fixpair_bispectrum_sums_f64 adds, with the shells' transforms, in as much memory as
+ * there is.
+ *
+ * With a mesh for each shell each shell is transformed once. With fewer, at least 3, shells come and go: for 40 shells and all their
+ * triangles 20 meshes take some 190 transforms, 10 meshes 490, 3 meshes 6200. The bits do not depend on it. Where fft holds a
+ * part of the mesh, all processes call with as many meshes and the same triangles, and add their sums.
+ *
+ * In/Out: sums        FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first
+ * Out:    transforms  how many it took; or NULL
+ * In:     triangles   3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
+ *         edges       edges_len increasing values of |n|^2: shell s holds edges[s] <= |n|^2 < edges[s+1]; the last at most (n/2)^2
+ *         modes       len reals on fft->fourier: delta(x) = sum_k delta_k exp(+i k.x)
+ *         fft         the transform
+ *         fields      fields_len reals, overwritten: those of fixpair_bispectrum_meshes_f64 for as many meshes as can be had
+ *         scratch     scratch_len bytes, see fixpair_bispectrum_scratch_f64
+ *         exec        or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _SCRATCH, _HOOK; FIXPAIR_ERROR_LENGTH also for fewer than 3 meshes,
+ *          FIXPAIR_ERROR_TABLE for edges that do not increase, FIXPAIR_ERROR_RANGE for edges beyond (n/2)^2 and shells that are not there,
+ *          FIXPAIR_ERROR_NOT_FINITE if a sum is NaN or infinite; sums are untouched by all
+ */
+fixpair_status_t fixpair_bispectrum_f64(int64_t *sums,
+                                        size_t *transforms,
+                                        const uint32_t *triangles,
+                                        size_t triangles_len,
+                                        const uint64_t *edges,
+                                        size_t edges_len,
+                                        const double *modes,
+                                        size_t len,
+                                        const struct fixpair_fft_f64 *fft,
+                                        double *fields,
+                                        size_t fields_len,
+                                        void *scratch,
+                                        size_t scratch_len,
+                                        const struct fixpair_exec *exec);
+
+/* fixpair_bispectrum_f64 in single precision. */
+fixpair_status_t fixpair_bispectrum_f32(int64_t *sums,
+                                        size_t *transforms,
+                                        const uint32_t *triangles,
+                                        size_t triangles_len,
+                                        const uint64_t *edges,
+                                        size_t edges_len,
+                                        const float *modes,
+                                        size_t len,
+                                        const struct fixpair_fft_f32 *fft,
+                                        float *fields,
+                                        size_t fields_len,
+                                        void *scratch,
+                                        size_t scratch_len,
+                                        const struct fixpair_exec *exec);
+
+/*
+ * The sums of triangles as numbers, each rounded once.
+ *
+ * Out: values  len numbers: sum over cells of D_i D_j D_k
+ * In:  sums    FIXPAIR_BISPECTRUM_WORDS * len integers
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE if a sum lost a term that was not finite
+ */
+fixpair_status_t fixpair_bispectrum_values(double *values,
+                                           const int64_t *sums,
+                                           size_t len);
+
+/*
+ * From sums over cells to B = V^2 (scale^3/n^3) value/count, V = L^3; 0 where no modes close the triangle.
+ *
+ * In/Out: values    len numbers of fixpair_bispectrum_values, then B
+ * In:     counts    len counts of fixpair_triangle_counts
+ *         n         cells on a side of the mesh
+ *         box_size  L; B comes in its unit to the sixth power
+ *         scale     what the modes have yet to be multiplied by: 1, or 1/n^3 after a forward transform that does not divide
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_MESH_SIZE for n = 0, FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_RANGE for a
+ *          box that is not positive or a result that overflows
+ */
+fixpair_status_t fixpair_bispectrum_normalise(double *values,
+                                              const uint64_t *counts,
+                                              size_t len,
+                                              size_t n,
+                                              double box_size,
+                                              double scale);
+
+/*
+ * The shot noise of B: (P_i + P_j + P_k) noise + noise^2.
+ *
+ * Out: out        triangles_len numbers
+ * In:  triangles  3 triangles_len numbers of shells, counted from 0
+ *      power      shells values of P, free of shot noise
+ *      noise      1/n for points of number density n, V sum w^2/(sum w)^2 for weighted ones
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for shells that are not there or a result that overflows
+ */
+fixpair_status_t fixpair_bispectrum_shot_noise(double *out,
+                                               const uint32_t *triangles,
+                                               size_t triangles_len,
+                                               const double *power,
+                                               size_t shells,
+                                               double noise);
+
+/*
+ * The reduced bispectrum Q = B/(P_i P_j + P_j P_k + P_k P_i); 0 where the denominator is.
+ *
+ * Out: out         triangles_len numbers
+ * In:  bispectrum  triangles_len values of B, free of shot noise
+ *      triangles   3 triangles_len numbers of shells, counted from 0
+ *      power       shells values of P, free of shot noise
+ * Returns: as fixpair_bispectrum_shot_noise
+ */
+fixpair_status_t fixpair_bispectrum_reduced(double *out,
+                                            const double *bispectrum,
+                                            const uint32_t *triangles,
+                                            size_t triangles_len,
+                                            const double *power,
+                                            size_t shells);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -8,6 +8,7 @@
 )]
 
 pub mod binning;
+pub mod bispectrum;
 pub mod built_in;
 pub mod correlation;
 pub mod cosmology;

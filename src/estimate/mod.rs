@@ -1,6 +1,7 @@
 //! Spectra and correlation functions of fields on meshes.
 
 pub mod binning;
+pub mod bispectrum;
 pub mod compensation;
 pub mod correlation;
 pub mod edges;

@@ -1,5 +1,6 @@
 //! Slow and obvious versions of the kernels: the oracles of the tests.
 
+pub(crate) mod bispectrum;
 pub(crate) mod built;
 pub(crate) mod convolution;
 pub(crate) mod deposit;

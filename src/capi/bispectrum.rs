@@ -1,0 +1,748 @@
+//! Bispectrum.
+
+use core::ffi::c_void;
+
+use super::border::Border;
+use super::exec::{HostExec, fixpair_exec};
+use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
+use super::mesh::fixpair_brick;
+use super::status::{code, fixpair_status_t};
+use crate::estimate::bispectrum::{self, Triangle};
+use crate::estimate::exact::ExactSum;
+use crate::real::Real;
+use crate::scratch::Layout;
+use crate::status::Result;
+
+/// 64-bit integers in the sum of one triangle. Sums of parts of a mesh are added integer by integer: MPI_Allreduce with MPI_INT64_T and
+/// MPI_SUM makes those of the whole mesh of them, bit for bit.
+pub const FIXPAIR_BISPECTRUM_WORDS: usize = 42;
+
+const _: () = assert!(FIXPAIR_BISPECTRUM_WORDS == ExactSum::WORDS);
+
+/// How many triangles fixpair_closed_triangles lists.
+///
+/// Out: count
+/// In:  edges    edges_len increasing values of |n|^2, n = k L/(2 pi): shell s holds the modes edges[s] <= |n|^2 < edges[s+1]
+///      centres  edges_len - 1 increasing numbers >= 0, or NULL
+/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_TABLE for edges or centres that do not increase, FIXPAIR_ERROR_NOT_FINITE for centres
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_closed_triangle_count(
+    count: *mut usize,
+    edges: *const u64,
+    edges_len: usize,
+    centres: *const f64,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise.
+        unsafe {
+            let count = border.write_one(count)?;
+            let edges = border.read(edges, edges_len)?;
+            let centres = border.read_optional(centres, edges_len.saturating_sub(1))?;
+            *count = bispectrum::closed_triangle_count(edges, centres)?;
+            Ok(())
+        }
+    })())
+}
+
+/// Lists all triangles of shells that close: three shells i <= j <= k each, counted from 0, in lexicographic order.
+///
+/// With centres, one for each shell in any unit, those with c_k <= c_i + c_j (within 1e-9): for shells of one width centred on its multiples, or
+/// counted by their floor, that is k <= i + j counted from 1, and 40 shells close 6350 triangles. Without, all that the modes of some
+/// wave vectors may close: sqrt(edges[k]) <= sqrt(edges[i+1] - 1) + sqrt(edges[j+1] - 1).
+///
+/// Out: triangles  3 triangles_len numbers, triangles_len from fixpair_closed_triangle_count
+/// In:  edges, centres as fixpair_closed_triangle_count
+/// Returns: 0, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_OVERLAP, or as fixpair_closed_triangle_count
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_closed_triangles(
+    triangles: *mut u32,
+    triangles_len: usize,
+    edges: *const u64,
+    edges_len: usize,
+    centres: *const f64,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise; a triangle is three numbers.
+        unsafe {
+            let triangles = border.write(triangles.cast::<Triangle>(), triangles_len)?;
+            let edges = border.read(edges, edges_len)?;
+            let centres = border.read_optional(centres, edges_len.saturating_sub(1))?;
+            bispectrum::closed_triangles(triangles, edges, centres)
+        }
+    })())
+}
+
+/// Lists the squeezed slice of a shell: (shell, j, j) for j = shell .. shells - 1.
+///
+/// Out: triangles  3 triangles_len numbers, triangles_len = shells - shell
+/// In:  shell      counted from 0
+///      shells     how many there are
+/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_RANGE unless shell < shells
+///
+/// # Safety
+/// `triangles` is null or points to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_squeezed_triangles(
+    triangles: *mut u32,
+    triangles_len: usize,
+    shell: usize,
+    shells: usize,
+) -> fixpair_status_t {
+    code((|| {
+        // SAFETY: the caller's promise; a triangle is three numbers.
+        let triangles = unsafe { Border::new().write(triangles.cast::<Triangle>(), triangles_len) }?;
+        bispectrum::squeezed_triangles(triangles, shell, shells)
+    })())
+}
+
+/// Scratch of fixpair_triangle_counts: for 40 shells of 3 k_f, n = 360 and their 6350 triangles 27 MB.
+///
+/// Out: scratch
+/// In:  triangles, edges, n as fixpair_triangle_counts
+/// Returns: 0, or as fixpair_triangle_counts
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_triangle_counts_scratch(
+    scratch: *mut Layout,
+    triangles: *const u32,
+    triangles_len: usize,
+    edges: *const u64,
+    edges_len: usize,
+    n: usize,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise; a triangle is three numbers.
+        unsafe {
+            let scratch = border.write_one(scratch)?;
+            let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
+            let edges = border.read(edges, edges_len)?;
+            *scratch = bispectrum::triangle_counts_scratch(edges, n, triangles)?;
+            Ok(())
+        }
+    })())
+}
+
+/// Counts, for each triangle, the ordered triples of modes k1, k2, k3, one from each of its shells, with k1 + k2 + k3 = 0. The numbers are exact.
+///
+/// A mesh knows mode numbers modulo n. Where n is less than the sum of a triangle's three upper radii, triples that close only modulo n are
+/// counted too, as they are summed too by fixpair_bispectrum_sums_f64. Counts depend on nothing but the arguments: keep them.
+///
+/// Out: counts     triangles_len numbers
+/// In:  triangles  3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
+///      edges      edges_len increasing values of |n|^2: shell s holds edges[s] <= |n|^2 < edges[s+1]; the last at most (n/2)^2
+///      n          cells on a side of the mesh
+///      scratch    scratch_len bytes, see fixpair_triangle_counts_scratch
+///      exec       or NULL
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _MESH_SIZE, _OVERFLOW, _SCRATCH, _HOOK; FIXPAIR_ERROR_TABLE for edges that do not
+///          increase, FIXPAIR_ERROR_RANGE for edges beyond (n/2)^2 and shells that are not there, FIXPAIR_ERROR_CONVERGENCE
+///          where rounding errors leave a count in doubt or one exceeds 2^48
+/// Cost: for 40 shells of 3 k_f, n = 360 and 6350 triangles 22 Gflop in double precision
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated; the hook keeps its contract.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_triangle_counts(
+    counts: *mut u64,
+    triangles: *const u32,
+    triangles_len: usize,
+    edges: *const u64,
+    edges_len: usize,
+    n: usize,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise; a triangle is three numbers.
+        unsafe {
+            let counts = border.write(counts, triangles_len)?;
+            let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
+            let edges = border.read(edges, edges_len)?;
+            let scratch = border.scratch(scratch, scratch_len)?;
+            let exec = HostExec::new(&mut border, exec)?;
+            bispectrum::triangle_counts(counts, triangles, edges, n, scratch, &exec)
+        }
+    })())
+}
+
+/// Copies the modes of one shell, lo <= |n|^2 < hi, and makes all others zero. Their inverse transform is what fixpair_bispectrum_sums_f64
+/// takes.
+///
+/// Out: out    len reals
+/// In:  modes  len reals: modes with delta(x) = sum_k delta_k exp(+i k.x)
+///      brick  of Fourier space, where both lie, in any layout
+///      lo, hi edges of the shell; hi at most (n/2)^2
+///      exec   or NULL
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _HOOK, FIXPAIR_ERROR_TABLE unless lo < hi, FIXPAIR_ERROR_RANGE for hi beyond
+///          (n/2)^2, or why the brick is refused
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated; the hook keeps its contract.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_shell_modes_f64(
+    out: *mut f64,
+    modes: *const f64,
+    len: usize,
+    brick: *const fixpair_brick,
+    lo: u64,
+    hi: u64,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { shell(out, modes, len, brick, lo, hi, exec) })
+}
+
+/// fixpair_shell_modes_f64 in single precision.
+///
+/// # Safety
+/// As fixpair_shell_modes_f64.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_shell_modes_f32(
+    out: *mut f32,
+    modes: *const f32,
+    len: usize,
+    brick: *const fixpair_brick,
+    lo: u64,
+    hi: u64,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { shell(out, modes, len, brick, lo, hi, exec) })
+}
+
+unsafe fn shell<T: Real>(
+    out: *mut T,
+    modes: *const T,
+    len: usize,
+    brick: *const fixpair_brick,
+    lo: u64,
+    hi: u64,
+    exec: *const fixpair_exec,
+) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise.
+    unsafe {
+        let out = border.write(out, len)?;
+        let modes = border.read(modes, len)?;
+        let brick = border.read_one(brick)?.check()?;
+        bispectrum::shell_modes(out, modes, &brick, lo, hi, &HostExec::new(&mut border, exec)?)
+    }
+}
+
+/// Scratch of fixpair_bispectrum_sums_f64. For T triangles, S shells, cells of b = 8 bytes (4 in single precision) and w = 64, or the brick's x
+/// planes if those are fewer: 396 T + 4 S + w (520 S b + 80 T) bytes and a few cache lines.
+///
+/// Out: scratch
+/// In:  brick          of configuration space
+///      shells         S
+///      triangles_len  T
+/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the brick is refused
+///
+/// # Safety
+/// Pointers are null or point to one value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_sums_scratch_f64(
+    scratch: *mut Layout,
+    brick: *const fixpair_brick,
+    shells: usize,
+    triangles_len: usize,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { sums_scratch::<f64>(scratch, brick, shells, triangles_len) })
+}
+
+/// fixpair_bispectrum_sums_scratch_f64 in single precision.
+///
+/// # Safety
+/// As fixpair_bispectrum_sums_scratch_f64.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_sums_scratch_f32(
+    scratch: *mut Layout,
+    brick: *const fixpair_brick,
+    shells: usize,
+    triangles_len: usize,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { sums_scratch::<f32>(scratch, brick, shells, triangles_len) })
+}
+
+unsafe fn sums_scratch<T: Real>(
+    scratch: *mut Layout,
+    brick: *const fixpair_brick,
+    shells: usize,
+    triangles_len: usize,
+) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise.
+    let (scratch, brick) = unsafe { (border.write_one(scratch)?, border.read_one(brick)?) };
+    *scratch = bispectrum::bispectrum_sums_scratch::<T>(&brick.check()?, shells, triangles_len)?;
+    Ok(())
+}
+
+/// Adds sum over cells x of D_i(x) D_j(x) D_k(x), for each triangle of a list, to its sum: D_s(x) = sum over the modes k of shell s of
+/// delta_k exp(+i k.x), from fixpair_shell_modes_f64 and the host's inverse transform.
+///
+/// A sum is FIXPAIR_BISPECTRUM_WORDS integers, zero at first. The sums of x slabs, added integer by integer, are those of the whole mesh bit for
+/// bit. fixpair_bispectrum_values makes numbers of them. In single precision products of three fields vanish below 1e-38 and
+/// overflow above 3e38.
+///
+/// In/Out: sums     FIXPAIR_BISPECTRUM_WORDS * triangles_len integers
+/// In:     triangles  3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
+///         fields   shells pointers to len reals each; those of shells that no triangle names may be NULL
+///         brick    of configuration space, where each field lies; what lies between its rows is not read
+///         scratch  scratch_len bytes, see fixpair_bispectrum_sums_scratch_f64
+///         exec     or NULL
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _SCRATCH, _HOOK, FIXPAIR_ERROR_RANGE for shells that are not
+///          there, FIXPAIR_ERROR_NOT_FINITE if a sum is NaN or infinite, or why the brick is refused; sums are untouched by all
+/// Cost: each field is read once; for all triangles of many shells 2 flops for each triangle and cell
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated; the hook keeps its contract.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_sums_f64(
+    sums: *mut i64,
+    triangles: *const u32,
+    triangles_len: usize,
+    fields: *const *const f64,
+    shells: usize,
+    len: usize,
+    brick: *const fixpair_brick,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe {
+        field_sums(sums, triangles, triangles_len, fields, shells, len, brick, scratch, scratch_len, exec)
+    })
+}
+
+/// fixpair_bispectrum_sums_f64 in single precision.
+///
+/// # Safety
+/// As fixpair_bispectrum_sums_f64.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_sums_f32(
+    sums: *mut i64,
+    triangles: *const u32,
+    triangles_len: usize,
+    fields: *const *const f32,
+    shells: usize,
+    len: usize,
+    brick: *const fixpair_brick,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe {
+        field_sums(sums, triangles, triangles_len, fields, shells, len, brick, scratch, scratch_len, exec)
+    })
+}
+
+/// Pointers to fields that all threads read.
+struct Fields<'a, T> {
+    starts: &'a [*const T],
+    length: usize,
+}
+
+// SAFETY: they are only read from, and only while the caller keeps them.
+unsafe impl<T: Real> Sync for Fields<'_, T> {}
+
+impl<'a, T: Real> Fields<'a, T> {
+    fn field(&self, shell: usize) -> &'a [T] {
+        let start = self.starts[shell];
+        // SAFETY: not null, aligned and apart from what is written (checked at the border); the rest is the caller's promise.
+        if start.is_null() { &[] } else { unsafe { core::slice::from_raw_parts(start, self.length) } }
+    }
+}
+
+unsafe fn field_sums<T: Real>(
+    sums: *mut i64,
+    triangles: *const u32,
+    triangles_len: usize,
+    fields: *const *const T,
+    shells: usize,
+    len: usize,
+    brick: *const fixpair_brick,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise; a sum is as many integers as stated, and a triangle three numbers.
+    unsafe {
+        let starts = border.read(fields, shells)?;
+        for &start in starts {
+            // More fields than a border has room for: each is compared with what is written.
+            let mut border = Border::new();
+            border.strided(sums.cast::<ExactSum>(), 1, triangles_len)?;
+            border.strided(scratch.cast::<u8>(), 1, scratch_len)?;
+            border.read_optional(start, len)?;
+        }
+        let sums = border.write(sums.cast::<ExactSum>(), triangles_len)?;
+        let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
+        let brick = border.read_one(brick)?.check()?;
+        let scratch = border.scratch(scratch, scratch_len)?;
+        let exec = HostExec::new(&mut border, exec)?;
+        let fields = Fields { starts, length: len };
+        let field = |shell: usize| fields.field(shell);
+        bispectrum::sums_of_fields(sums, triangles, shells, &field, &brick, scratch, &exec)
+    }
+}
+
+/// Reals in `count` meshes for fixpair_bispectrum_f64: each is fft->length, rounded up to 64 bytes.
+///
+/// Out: reals
+/// In:  fft
+///      count
+/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the hook is refused
+///
+/// # Safety
+/// Pointers are null or point to one value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_meshes_f64(
+    reals: *mut usize,
+    fft: *const fixpair_fft_f64,
+    count: usize,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { meshes(reals, fft, count) })
+}
+
+/// fixpair_bispectrum_meshes_f64 in single precision.
+///
+/// # Safety
+/// As fixpair_bispectrum_meshes_f64.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_meshes_f32(
+    reals: *mut usize,
+    fft: *const fixpair_fft_f32,
+    count: usize,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { meshes(reals, fft, count) })
+}
+
+unsafe fn meshes<H: Hook>(reals: *mut usize, fft: *const H, count: usize) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise.
+    unsafe {
+        let reals = border.write_one(reals)?;
+        *reals = bispectrum::bispectrum_meshes(&HostFft::new(&mut border, fft)?, count)?;
+        Ok(())
+    }
+}
+
+/// Scratch of fixpair_bispectrum_f64: that of fixpair_bispectrum_sums_scratch_f64 on the cells of fft, 16 bytes a shell and a few cache lines
+/// more.
+///
+/// Out: scratch
+/// In:  fft
+///      shells, triangles_len  how many there are
+/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the hook is refused
+///
+/// # Safety
+/// Pointers are null or point to one value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_scratch_f64(
+    scratch: *mut Layout,
+    fft: *const fixpair_fft_f64,
+    shells: usize,
+    triangles_len: usize,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { whole_scratch(scratch, fft, shells, triangles_len) })
+}
+
+/// fixpair_bispectrum_scratch_f64 in single precision.
+///
+/// # Safety
+/// As fixpair_bispectrum_scratch_f64.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_scratch_f32(
+    scratch: *mut Layout,
+    fft: *const fixpair_fft_f32,
+    shells: usize,
+    triangles_len: usize,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { whole_scratch(scratch, fft, shells, triangles_len) })
+}
+
+unsafe fn whole_scratch<H: Hook>(
+    scratch: *mut Layout,
+    fft: *const H,
+    shells: usize,
+    triangles_len: usize,
+) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise.
+    unsafe {
+        let scratch = border.write_one(scratch)?;
+        let fft = HostFft::new(&mut border, fft)?;
+        *scratch = bispectrum::bispectrum_scratch(&fft, shells, triangles_len)?;
+        Ok(())
+    }
+}
+
+/// From modes to the sums of all triangles of a list: what fixpair_bispectrum_sums_f64 adds, with the shells' transforms, in as much memory as
+/// there is.
+///
+/// With a mesh for each shell each shell is transformed once. With fewer, at least 3, shells come and go: for 40 shells and all their
+/// triangles 20 meshes take some 190 transforms, 10 meshes 490, 3 meshes 6200. The bits do not depend on it. Where fft holds a
+/// part of the mesh, all processes call with as many meshes and the same triangles, and add their sums.
+///
+/// In/Out: sums        FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first
+/// Out:    transforms  how many it took; or NULL
+/// In:     triangles   3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
+///         edges       edges_len increasing values of |n|^2: shell s holds edges[s] <= |n|^2 < edges[s+1]; the last at most (n/2)^2
+///         modes       len reals on fft->fourier: delta(x) = sum_k delta_k exp(+i k.x)
+///         fft         the transform
+///         fields      fields_len reals, overwritten: those of fixpair_bispectrum_meshes_f64 for as many meshes as can be had
+///         scratch     scratch_len bytes, see fixpair_bispectrum_scratch_f64
+///         exec        or NULL
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _SCRATCH, _HOOK; FIXPAIR_ERROR_LENGTH also for fewer than 3 meshes,
+///          FIXPAIR_ERROR_TABLE for edges that do not increase, FIXPAIR_ERROR_RANGE for edges beyond (n/2)^2 and shells that are not there,
+///          FIXPAIR_ERROR_NOT_FINITE if a sum is NaN or infinite; sums are untouched by all
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated; the hooks keep their contracts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_f64(
+    sums: *mut i64,
+    transforms: *mut usize,
+    triangles: *const u32,
+    triangles_len: usize,
+    edges: *const u64,
+    edges_len: usize,
+    modes: *const f64,
+    len: usize,
+    fft: *const fixpair_fft_f64,
+    fields: *mut f64,
+    fields_len: usize,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe {
+        whole(
+            sums,
+            transforms,
+            triangles,
+            triangles_len,
+            edges,
+            edges_len,
+            modes,
+            len,
+            fft,
+            fields,
+            fields_len,
+            scratch,
+            scratch_len,
+            exec,
+        )
+    })
+}
+
+/// fixpair_bispectrum_f64 in single precision.
+///
+/// # Safety
+/// As fixpair_bispectrum_f64.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_f32(
+    sums: *mut i64,
+    transforms: *mut usize,
+    triangles: *const u32,
+    triangles_len: usize,
+    edges: *const u64,
+    edges_len: usize,
+    modes: *const f32,
+    len: usize,
+    fft: *const fixpair_fft_f32,
+    fields: *mut f32,
+    fields_len: usize,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe {
+        whole(
+            sums,
+            transforms,
+            triangles,
+            triangles_len,
+            edges,
+            edges_len,
+            modes,
+            len,
+            fft,
+            fields,
+            fields_len,
+            scratch,
+            scratch_len,
+            exec,
+        )
+    })
+}
+
+unsafe fn whole<H: Hook>(
+    sums: *mut i64,
+    transforms: *mut usize,
+    triangles: *const u32,
+    triangles_len: usize,
+    edges: *const u64,
+    edges_len: usize,
+    modes: *const H::Real,
+    len: usize,
+    fft: *const H,
+    fields: *mut H::Real,
+    fields_len: usize,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise; a sum is as many integers as stated, and a triangle three numbers.
+    unsafe {
+        let sums = border.write(sums.cast::<ExactSum>(), triangles_len)?;
+        let transforms = border.write(transforms, usize::from(!transforms.is_null()))?;
+        let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
+        let edges = border.read(edges, edges_len)?;
+        let modes = border.read(modes, len)?;
+        let mut fft = HostFft::new(&mut border, fft)?;
+        let fields = border.write(fields, fields_len)?;
+        let scratch = border.scratch(scratch, scratch_len)?;
+        let exec = HostExec::new(&mut border, exec)?;
+        let made = bispectrum::bispectrum(sums, triangles, edges, modes, &mut fft, fields, scratch, &exec)?;
+        transforms.fill(made);
+        Ok(())
+    }
+}
+
+/// The sums of triangles as numbers, each rounded once.
+///
+/// Out: values  len numbers: sum over cells of D_i D_j D_k
+/// In:  sums    FIXPAIR_BISPECTRUM_WORDS * len integers
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE if a sum lost a term that was not finite
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_values(
+    values: *mut f64,
+    sums: *const i64,
+    len: usize,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise; a sum is as many integers as stated.
+        let (values, sums) =
+            unsafe { (border.write(values, len)?, border.read(sums.cast::<ExactSum>(), len)?) };
+        bispectrum::bispectrum_values(values, sums)
+    })())
+}
+
+/// From sums over cells to B = V^2 (scale^3/n^3) value/count, V = L^3; 0 where no modes close the triangle.
+///
+/// In/Out: values    len numbers of fixpair_bispectrum_values, then B
+/// In:     counts    len counts of fixpair_triangle_counts
+///         n         cells on a side of the mesh
+///         box_size  L; B comes in its unit to the sixth power
+///         scale     what the modes have yet to be multiplied by: 1, or 1/n^3 after a forward transform that does not divide
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_MESH_SIZE for n = 0, FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_RANGE for a
+///          box that is not positive or a result that overflows
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_normalise(
+    values: *mut f64,
+    counts: *const u64,
+    len: usize,
+    n: usize,
+    box_size: f64,
+    scale: f64,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise.
+        let (values, counts) = unsafe { (border.write(values, len)?, border.read(counts, len)?) };
+        bispectrum::normalise(values, counts, n, box_size, scale)
+    })())
+}
+
+/// The shot noise of B: (P_i + P_j + P_k) noise + noise^2.
+///
+/// Out: out        triangles_len numbers
+/// In:  triangles  3 triangles_len numbers of shells, counted from 0
+///      power      shells values of P, free of shot noise
+///      noise      1/n for points of number density n, V sum w^2/(sum w)^2 for weighted ones
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for shells that are not there or a result that overflows
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_shot_noise(
+    out: *mut f64,
+    triangles: *const u32,
+    triangles_len: usize,
+    power: *const f64,
+    shells: usize,
+    noise: f64,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise; a triangle is three numbers.
+        unsafe {
+            let out = border.write(out, triangles_len)?;
+            let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
+            bispectrum::shot_noise(out, triangles, border.read(power, shells)?, noise)
+        }
+    })())
+}
+
+/// The reduced bispectrum Q = B/(P_i P_j + P_j P_k + P_k P_i); 0 where the denominator is.
+///
+/// Out: out         triangles_len numbers
+/// In:  bispectrum  triangles_len values of B, free of shot noise
+///      triangles   3 triangles_len numbers of shells, counted from 0
+///      power       shells values of P, free of shot noise
+/// Returns: as fixpair_bispectrum_shot_noise
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_bispectrum_reduced(
+    out: *mut f64,
+    bispectrum: *const f64,
+    triangles: *const u32,
+    triangles_len: usize,
+    power: *const f64,
+    shells: usize,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise; a triangle is three numbers.
+        unsafe {
+            let out = border.write(out, triangles_len)?;
+            let spectrum = border.read(bispectrum, triangles_len)?;
+            let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
+            bispectrum::reduced(out, spectrum, triangles, border.read(power, shells)?)
+        }
+    })())
+}

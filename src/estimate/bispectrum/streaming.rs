@@ -1,0 +1,216 @@
+//! All triangles of a field in one call, with as many meshes as there is memory for.
+//!
+//! With M meshes for U shells in use, M < U, the shells are dealt out in groups of a = (M - c)/2, c = max(1, M/5). Two groups at a time stay
+//! in memory, every pair of groups once, in an order in which each step brings in one new group; of the triangles whose two lower shells
+//! lie in them the third shell is brought in, c shells at a time. Pairs and shells that no triangle asks for are skipped, and
+//! the mesh that was not needed for longest makes room. The bits do not depend on M: only the order of the triangles does.
+
+use super::shells::{check_shells, shell_modes};
+use super::sums::{Work, accumulate, distinct, merge, number};
+use super::triangles::{Triangle, check_triangles, sorted};
+use crate::estimate::exact::ExactSum;
+use crate::exec::Exec;
+use crate::fft::Fft3;
+use crate::real::Real;
+use crate::scratch::{ALIGN, Arena, Layout};
+use crate::status::{Error, Result};
+
+/// No shell, no mesh.
+const NONE: u32 = u32::MAX;
+
+/// Reals of `count` meshes for [`bispectrum`]: each is `fft.length()`, rounded up to whole cache lines.
+///
+/// # Errors
+/// `Overflow` if they do not fit the address space.
+pub fn bispectrum_meshes<T: Real>(fft: &dyn Fft3<T>, count: usize) -> Result<usize> {
+    let reals = apart(fft).checked_mul(count).ok_or(Error::Overflow)?;
+    Layout::EMPTY.and::<T>(reals).map(|_| reals)
+}
+
+fn apart<T: Real>(fft: &dyn Fft3<T>) -> usize {
+    fft.length().next_multiple_of(ALIGN / size_of::<T>())
+}
+
+/// Scratch of [`bispectrum`]: that of [`super::bispectrum_sums_scratch`] on the cells of `fft`, 16 S bytes more, and a few cache lines.
+///
+/// # Errors
+/// `Overflow` if the bytes do not fit the address space.
+pub fn bispectrum_scratch<T: Real>(fft: &dyn Fft3<T>, shells: usize, triangles: usize) -> Result<Layout> {
+    let layout = Layout::EMPTY.and::<ExactSum>(triangles)?.and::<u32>(triangles)?;
+    let layout = layout.and::<u32>(shells)?.and::<u32>(shells)?.and::<[u32; 2]>(shells)?;
+    Work::<T>::layout(layout, fft.configuration(), shells, triangles)
+}
+
+/// Adds sum over cells of D_i D_j D_k, for every triangle of a list, to `sums`, and returns the number of transforms that it took.
+///
+/// `sums`: one for each triangle, all zero at first. `modes`: delta_k on `fft.fourier()`. `fields`: M >= 3 meshes of
+/// [`bispectrum_meshes`]`(fft, 1)` reals each, overwritten; with M = S, the number of shells, each shell is transformed once. With 40 shells
+/// and all their triangles 20 meshes take some 190 transforms, 10 meshes 490, 3 meshes 6200. `edges`: S + 1 of them.
+/// The bits of `sums` depend on none of these, nor on threads. Where `fft` holds a part of the mesh, all processes call with the same M and
+/// triangles, and add their sums.
+///
+/// # Errors
+/// `Table` for edges that do not increase, `Range` for shells that reach the Nyquist planes and for triangles of shells that are
+/// not there, `Length` for short arrays, fewer than 3 meshes, or unless there is a sum for each triangle; `Overflow` for more than 2^30
+/// triangles, `Scratch`, `Alignment`; `NotFinite` as [`super::bispectrum_sums`]; what `fft` and `exec` return. `sums` is
+/// untouched by all of them.
+///
+/// Cost: for each transform also one pass over `modes` and a mesh; products as [`super::bispectrum_sums`].
+pub fn bispectrum<T: Real>(
+    sums: &mut [ExactSum],
+    triangles: &[Triangle],
+    edges: &[u64],
+    modes: &[T],
+    fft: &mut dyn Fft3<T>,
+    fields: &mut [T],
+    scratch: &mut [u8],
+    exec: &dyn Exec,
+) -> Result<usize> {
+    let (cells, fourier, length, apart) = (*fft.configuration(), *fft.fourier(), fft.length(), apart(fft));
+    check_shells(edges, cells.n())?;
+    let shells = edges.len() - 1;
+    check_triangles(triangles, shells)?;
+    fourier.check_length(modes)?;
+    let meshes = fields.len().checked_div(apart).unwrap_or(shells);
+    if sums.len() != triangles.len() || meshes < 3.min(shells) {
+        return Err(Error::Length);
+    }
+    let layout = bispectrum_scratch(fft, shells, triangles.len())?;
+    let mut arena = Arena::new(scratch, layout)?;
+    let exact = arena.take::<ExactSum>(triangles.len())?;
+    let order = arena.take::<u32>(triangles.len())?;
+    let ranks = arena.take::<u32>(shells)?;
+    let needed = arena.take::<u32>(shells)?;
+    // Shell in each mesh, and the last batch that needed it. More meshes than shells are of no use.
+    let places = arena.take::<[u32; 2]>(shells)?;
+    let mut work = Work::take(&mut arena, &cells, shells, triangles.len())?;
+    let places = &mut places[..shells.min(meshes)];
+    exact.fill(ExactSum::ZERO);
+    number(order);
+    places.fill([NONE, 0]);
+    needed.fill(0);
+    let groups = Groups::new(ranks, triangles, places.len());
+    order.sort_unstable_by_key(|&t| groups.turn(triangles[t as usize]));
+    let (mut transforms, mut batch, mut at) = (0, 0, 0);
+    // Transforms may be collective: a process whose sums are not finite goes on to the end with the others.
+    let mut outcome = Ok(());
+    while at < order.len() {
+        let turn = |t: u32| groups.turn(triangles[t as usize]);
+        let pair = turn(order[at]).0;
+        let pair_end = at + order[at..].partition_point(|&t| turn(t).0 == pair);
+        let resident = at..pair_end;
+        while at < pair_end {
+            batch += 1;
+            let end = groups.batch_end(order, at, pair_end, triangles);
+            let in_pair = order[resident.clone()]
+                .iter()
+                .flat_map(|&t| distinct(triangles[t as usize]).filter(|&s| groups.in_pair(pair, s)));
+            let in_batch = order[at..end].iter().flat_map(|&t| distinct(triangles[t as usize]));
+            for shell in in_pair.chain(in_batch) {
+                needed[shell as usize] = batch;
+            }
+            for [shell, last] in places.iter_mut() {
+                if *shell != NONE && needed[*shell as usize] == batch {
+                    *last = batch;
+                }
+            }
+            for shell in 0..shells {
+                if needed[shell] != batch || places.iter().any(|place| place[0] == shell as u32) {
+                    continue;
+                }
+                let oldest = places.iter().enumerate().min_by_key(|(_, place)| place[1]);
+                let Some(mesh) = oldest.map(|(mesh, _)| mesh) else { return Err(Error::Length) };
+                places[mesh] = [shell as u32, batch];
+                let field = &mut fields[mesh * apart..][..length];
+                shell_modes(field, modes, &fourier, edges[shell], edges[shell + 1], exec)?;
+                fft.inverse(field)?;
+                transforms += 1;
+            }
+            let (shared, places) = (&*fields, &*places);
+            let field = |shell: usize| {
+                let mesh = places.iter().position(|place| place[0] == shell as u32);
+                mesh.map_or(&shared[..0], |mesh| &shared[mesh * apart..][..length])
+            };
+            if outcome.is_ok() {
+                let order = &mut order[at..end];
+                match accumulate(exact, triangles, order, &field, &cells, &mut work, exec) {
+                    Err(Error::NotFinite) => outcome = Err(Error::NotFinite),
+                    other => other?,
+                }
+            }
+            at = end;
+        }
+    }
+    outcome?;
+    merge(sums, exact);
+    Ok(transforms)
+}
+
+/// How shells are dealt out.
+struct Groups<'a> {
+    /// Place of each shell among those in use.
+    ranks: &'a [u32],
+    /// Shells of a group.
+    size: u32,
+    /// Shells that are brought in at a time.
+    third: usize,
+    count: u32,
+}
+
+impl<'a> Groups<'a> {
+    fn new(ranks: &'a mut [u32], triangles: &[Triangle], meshes: usize) -> Self {
+        ranks.fill(NONE);
+        for &shell in triangles.iter().flatten() {
+            ranks[shell as usize] = 0;
+        }
+        let mut used = 0;
+        for rank in ranks.iter_mut().filter(|rank| **rank == 0) {
+            *rank = used;
+            used += 1;
+        }
+        let third = (meshes / 5).max(1);
+        let size = if used as usize <= meshes { used.max(1) } else { (meshes - third) as u32 / 2 };
+        Self { ranks, size, third, count: used.div_ceil(size) }
+    }
+
+    fn group(&self, shell: u32) -> u32 {
+        self.ranks[shell as usize] / self.size
+    }
+
+    /// When a triangle has its turn: with which pair of groups, and with which third shell, 0 where all are in the pair.
+    fn turn(&self, triangle: Triangle) -> ((u32, u32), u32) {
+        let [i, j, k] = sorted(triangle);
+        let [a, b, c] = [i, j, k].map(|shell| self.group(shell));
+        let (a, b) = match (a == b, b == c) {
+            (false, _) => (a, b),
+            (true, false) => (b, c),
+            (true, true) if a + 1 < self.count => (a, a + 1),
+            (true, true) => (a.saturating_sub(1), a),
+        };
+        // Up and down in turns, so that only one group changes from pair to pair.
+        let step = if a % 2 == 0 { b } else { self.count - 1 - b };
+        let third = if self.in_pair((a, step), k) { 0 } else { 1 + self.ranks[k as usize] };
+        ((a, step), third)
+    }
+
+    fn in_pair(&self, (a, step): (u32, u32), shell: u32) -> bool {
+        let b = if a.is_multiple_of(2) { step } else { self.count - 1 - step };
+        let group = self.group(shell);
+        group == a || group == b
+    }
+
+    /// The end of the triangles from `at` on that the meshes can serve together.
+    fn batch_end(&self, order: &[u32], at: usize, end: usize, triangles: &[Triangle]) -> usize {
+        let third = |place: usize| self.turn(triangles[order[place] as usize]).1;
+        let (mut last, mut thirds) = (0, 0);
+        for place in at..end {
+            if third(place) != last {
+                if thirds == self.third {
+                    return place;
+                }
+                (last, thirds) = (third(place), thirds + 1);
+            }
+        }
+        end
+    }
+}

@@ -1,0 +1,112 @@
+//! From sums to spectra.
+
+use super::triangles::{Triangle, check_triangles};
+use crate::estimate::exact::ExactSum;
+use crate::real::Real;
+use crate::status::{Error, Result};
+
+fn check_finite(values: &[f64]) -> Result<()> {
+    if values.iter().all(|&x| Real::is_finite(x)) { Ok(()) } else { Err(Error::NotFinite) }
+}
+
+/// The sums over cells as numbers, each rounded once.
+///
+/// # Errors
+/// `Length` unless there is a value for each sum; `NotFinite` if a sum lost a term. `values` is untouched by both.
+pub fn bispectrum_values(values: &mut [f64], sums: &[ExactSum]) -> Result<()> {
+    if values.len() != sums.len() {
+        return Err(Error::Length);
+    }
+    if sums.iter().any(|sum| !Real::is_finite(sum.value())) {
+        return Err(Error::NotFinite);
+    }
+    for (value, sum) in values.iter_mut().zip(sums) {
+        *value = sum.value();
+    }
+    Ok(())
+}
+
+/// B = V^2 (scale^3/n^3) value/count, and 0 where no triple of modes closes the triangle.
+///
+/// `values`: from [`bispectrum_values`], replaced by B. `counts`: from [`super::triangle_counts`]. `scale`: what the modes have
+/// yet to be multiplied by to be delta_k with delta(x) = sum_k delta_k exp(+i k.x): 1, or 1/n^3 after a forward transform that does
+/// not divide. V = `box_size`^3; B comes in its unit to the sixth power, (Mpc/h)^6.
+///
+/// # Errors
+/// `Length` unless there is a count for each value, `MeshSize` for n = 0, `NotFinite` for box, scale or values, `Range` for a box
+/// that is not positive, and if a result overflows. `values` is untouched by all of them.
+pub fn normalise(values: &mut [f64], counts: &[u64], n: usize, box_size: f64, scale: f64) -> Result<()> {
+    if values.len() != counts.len() {
+        return Err(Error::Length);
+    }
+    if n == 0 {
+        return Err(Error::MeshSize);
+    }
+    check_finite(&[box_size, scale])?;
+    check_finite(values)?;
+    if box_size <= 0.0 {
+        return Err(Error::Range);
+    }
+    let volume = box_size * box_size * box_size;
+    let side = scale / n as f64;
+    let factor = volume * volume * (side * side * side);
+    let spectrum = |value: f64, count: u64| if count == 0 { 0.0 } else { factor * value / count as f64 };
+    if values.iter().zip(counts).any(|(&value, &count)| !Real::is_finite(spectrum(value, count))) {
+        return Err(Error::Range);
+    }
+    for (value, &count) in values.iter_mut().zip(counts) {
+        *value = spectrum(*value, count);
+    }
+    Ok(())
+}
+
+/// out = of(P_i, P_j, P_k, number of the triangle), once all results are known to be finite.
+fn combine(
+    out: &mut [f64],
+    triangles: &[Triangle],
+    power: &[f64],
+    of: impl Fn([f64; 3], usize) -> f64,
+) -> Result<()> {
+    check_triangles(triangles, power.len())?;
+    if out.len() != triangles.len() {
+        return Err(Error::Length);
+    }
+    check_finite(power)?;
+    let value = |t: usize| of(triangles[t].map(|shell| power[shell as usize]), t);
+    if (0..out.len()).any(|t| !Real::is_finite(value(t))) {
+        return Err(Error::Range);
+    }
+    for (t, out) in out.iter_mut().enumerate() {
+        *out = value(t);
+    }
+    Ok(())
+}
+
+/// The shot noise of B: (P_i + P_j + P_k) noise + noise^2.
+///
+/// `power`: P of each shell, free of shot noise. `noise`: 1/n for points of number density n, V sum w^2/(sum w)^2 for weighted ones.
+///
+/// # Errors
+/// `Range` for a triangle of a shell without P and if a result overflows, `Length` unless there is a result for each triangle,
+/// `NotFinite` for P and noise. `out` is untouched by all of them.
+pub fn shot_noise(out: &mut [f64], triangles: &[Triangle], power: &[f64], noise: f64) -> Result<()> {
+    check_finite(&[noise])?;
+    combine(out, triangles, power, |[a, b, c], _| (a + b + c) * noise + noise * noise)
+}
+
+/// The reduced bispectrum Q = B/(P_i P_j + P_j P_k + P_k P_i); 0 where the denominator is.
+///
+/// `power`: P of each shell; both free of shot noise.
+///
+/// # Errors
+/// As [`shot_noise`]; `Length` unless there is a B for each triangle, `NotFinite` for B.
+pub fn reduced(out: &mut [f64], bispectrum: &[f64], triangles: &[Triangle], power: &[f64]) -> Result<()> {
+    if bispectrum.len() != triangles.len() {
+        return Err(Error::Length);
+    }
+    check_finite(bispectrum)?;
+    combine(out, triangles, power, |[a, b, c], t| {
+        let products = a * b + b * c + c * a;
+        if products == 0.0 { 0.0 } else { bispectrum[t] / products }
+    })
+}
