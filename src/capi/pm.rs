@@ -213,7 +213,8 @@ unsafe fn query(
 /// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _CHOICE, _SCRATCH, or why the region is refused; FIXPAIR_ERROR_NOT_FINITE
 ///          for box_size and shift, or for a position or weight, after which, as after FIXPAIR_ERROR_OUTSIDE, the mesh holds some of the
 ///          particles; after FIXPAIR_ERROR_HOOK it is undefined
-/// Cost: about 15 ns a particle and core
+/// Cost: on one core in single precision 16 (NGP) to 55 ns (PCS) a particle if neighbours in memory are neighbours in space, 31 to 82 ns in
+///       random order
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.
@@ -371,7 +372,7 @@ pub unsafe extern "C" fn fixpair_read_out_scratch_f32(
 ///      scratch   scratch_len bytes, see fixpair_read_out_scratch_f64
 ///      exec      or NULL
 /// Returns: as fixpair_deposit_f64; after FIXPAIR_ERROR_NOT_FINITE for a position and FIXPAIR_ERROR_OUTSIDE some values are written
-/// Cost: about 15 ns a particle and core
+/// Cost: as fixpair_deposit_f64, or less
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.

@@ -43,7 +43,8 @@ pub fn deposit_scratch<T: Real>(region: &Region, particles: usize, window: Windo
 /// the region, `Scratch`, `Alignment`, `Hook`; `NotFinite` for a position or weight and `Outside` for a particle as above: the mesh then
 /// holds some of the particles.
 ///
-/// The same bits for any number of threads; they may depend on the region, for addition rounds. Cost: about 15 ns a particle and core.
+/// The same bits for any number of threads; they may depend on the region, for addition rounds. Cost on one core, `f32`: 16, 19, 29 and 55 ns a
+/// particle for order 1 to 4 if neighbours in memory are neighbours in space, 31 to 82 ns in random order.
 pub fn deposit<T: Real>(
     mesh: &mut [T],
     region: &Region,

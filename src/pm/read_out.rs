@@ -36,7 +36,8 @@ pub fn read_out_scratch<T: Real>(region: &Region, particles: usize, window: Wind
 /// # Errors
 /// As [`super::deposit::deposit`]; after `NotFinite` for a position and `Outside`, some values are written.
 ///
-/// The same bits for any number of threads. Cost: about 15 ns a particle and core.
+/// The same bits for any number of threads. Cost on one core, `f32`: 15, 17, 25 and 38 ns a particle for order 1 to 4 if neighbours in memory are
+/// neighbours in space, 43 to 78 ns in random order.
 pub fn read_out<T: Real>(
     values: &mut ColumnMut<'_, T>,
     mesh: &[T],
