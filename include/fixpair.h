@@ -1375,7 +1375,8 @@ fixpair_status_t fixpair_deposit_scratch_f32(struct fixpair_layout *scratch,
  * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _CHOICE, _SCRATCH, or why the region is refused; FIXPAIR_ERROR_NOT_FINITE
  *          for box_size and shift, or for a position or weight, after which, as after FIXPAIR_ERROR_OUTSIDE, the mesh holds some of the
  *          particles; after FIXPAIR_ERROR_HOOK it is undefined
- * Cost: about 15 ns a particle and core
+ * Cost: on one core in single precision 16 (NGP) to 55 ns (PCS) a particle if neighbours in memory are neighbours in space, 31 to 82 ns in
+ *       random order
  */
 fixpair_status_t fixpair_deposit_f64(double *mesh,
                                      size_t mesh_len,
@@ -1436,7 +1437,7 @@ fixpair_status_t fixpair_read_out_scratch_f32(struct fixpair_layout *scratch,
  *      scratch   scratch_len bytes, see fixpair_read_out_scratch_f64
  *      exec      or NULL
  * Returns: as fixpair_deposit_f64; after FIXPAIR_ERROR_NOT_FINITE for a position and FIXPAIR_ERROR_OUTSIDE some values are written
- * Cost: about 15 ns a particle and core
+ * Cost: as fixpair_deposit_f64, or less
  */
 fixpair_status_t fixpair_read_out_f64(double *values,
                                       size_t values_stride,
