@@ -1336,7 +1336,7 @@ fixpair_status_t fixpair_brick_with_ghosts(struct fixpair_brick *ghosted,
 
 /*
  * Scratch of fixpair_deposit_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded
- * up to 64; t is at most 4096 and depends on region and window alone. At most 72 MB, however many particles.
+ * up to 64; t is at most 4096 and depends on region and window alone. At most 73 MB, however many particles.
  *
  * Out: scratch
  * In:  region     of configuration space; may run over the edge
@@ -1349,7 +1349,7 @@ fixpair_status_t fixpair_deposit_scratch_f64(struct fixpair_layout *scratch,
                                              size_t particles,
                                              int32_t window);
 
-/* fixpair_deposit_scratch_f64 in single precision: 16 m instead of 32 m, at most 38 MB. */
+/* fixpair_deposit_scratch_f64 in single precision: 16 m instead of 32 m, at most 39 MB. */
 fixpair_status_t fixpair_deposit_scratch_f32(struct fixpair_layout *scratch,
                                              const struct fixpair_brick *region,
                                              size_t particles,
@@ -1407,7 +1407,7 @@ fixpair_status_t fixpair_deposit_f32(float *mesh,
 
 /*
  * Scratch of fixpair_read_out_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded
- * up to 64; t is at most 4096 and depends on region and window alone. At most 72 MB, however many particles.
+ * up to 64; t is at most 4096 and depends on region and window alone. At most 73 MB, however many particles.
  *
  * Out: scratch
  * In:  region     of configuration space; may run over the edge
@@ -1420,7 +1420,7 @@ fixpair_status_t fixpair_read_out_scratch_f64(struct fixpair_layout *scratch,
                                               size_t particles,
                                               int32_t window);
 
-/* fixpair_read_out_scratch_f64 in single precision: 16 m instead of 32 m, at most 38 MB. */
+/* fixpair_read_out_scratch_f64 in single precision: 16 m instead of 32 m, at most 39 MB. */
 fixpair_status_t fixpair_read_out_scratch_f32(struct fixpair_layout *scratch,
                                               const struct fixpair_brick *region,
                                               size_t particles,

@@ -144,7 +144,7 @@ pub unsafe extern "C" fn fixpair_brick_with_ghosts(
 }
 
 /// Scratch of fixpair_deposit_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded
-/// up to 64; t is at most 4096 and depends on region and window alone. At most 72 MB, however many particles.
+/// up to 64; t is at most 4096 and depends on region and window alone. At most 73 MB, however many particles.
 ///
 /// Out: scratch
 /// In:  region     of configuration space; may run over the edge
@@ -165,7 +165,7 @@ pub unsafe extern "C" fn fixpair_deposit_scratch_f64(
     code(unsafe { query(scratch, region, particles, window, pm::deposit_scratch::<f64>) })
 }
 
-/// fixpair_deposit_scratch_f64 in single precision: 16 m instead of 32 m, at most 38 MB.
+/// fixpair_deposit_scratch_f64 in single precision: 16 m instead of 32 m, at most 39 MB.
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -326,7 +326,7 @@ unsafe fn add_particles<P: Places>(
 }
 
 /// Scratch of fixpair_read_out_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded
-/// up to 64; t is at most 4096 and depends on region and window alone. At most 72 MB, however many particles.
+/// up to 64; t is at most 4096 and depends on region and window alone. At most 73 MB, however many particles.
 ///
 /// Out: scratch
 /// In:  region     of configuration space; may run over the edge
@@ -347,7 +347,7 @@ pub unsafe extern "C" fn fixpair_read_out_scratch_f64(
     code(unsafe { query(scratch, region, particles, window, pm::read_out_scratch::<f64>) })
 }
 
-/// fixpair_read_out_scratch_f64 in single precision: 16 m instead of 32 m, at most 38 MB.
+/// fixpair_read_out_scratch_f64 in single precision: 16 m instead of 32 m, at most 39 MB.
 ///
 /// # Safety
 /// Pointers are null or point to one value.

@@ -20,7 +20,7 @@ use crate::simd::Simd;
 use crate::status::{Error, Result};
 
 /// Scratch of [`deposit`]: with m = min(particles, 2^21), t tiles (at most 4096, a function of region and window) and r = size of `T`,
-/// 4 r m + 2 m + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded up to 64. No more than 38 MB in `f32`, 72 MB in `f64`.
+/// 4 r m + 2 m + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded up to 64. No more than 39 MB in `f32`, 73 MB in `f64`.
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
