@@ -40,8 +40,11 @@ pub trait Real:
     fn to_f64(self) -> f64;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
-    /// Integer part and remainder, both exact where 0 <= self < 2^31.
-    fn split(self) -> (i32, Self);
+    /// Integer part and remainder, both exact.
+    ///
+    /// # Safety
+    /// 0 <= self < 2^31.
+    unsafe fn split(self) -> (i32, Self);
 }
 
 impl Real for f32 {
@@ -65,8 +68,9 @@ impl Real for f32 {
     }
 
     #[inline(always)]
-    fn split(self) -> (i32, Self) {
-        let whole = self as i32;
+    unsafe fn split(self) -> (i32, Self) {
+        // SAFETY: in range (caller). A checked conversion would keep loops from becoming vectors.
+        let whole = unsafe { self.to_int_unchecked::<i32>() };
         (whole, self - whole as Self)
     }
 }
@@ -92,8 +96,9 @@ impl Real for f64 {
     }
 
     #[inline(always)]
-    fn split(self) -> (i32, Self) {
-        let whole = self as i32;
+    unsafe fn split(self) -> (i32, Self) {
+        // SAFETY: in range (caller). A checked conversion would keep loops from becoming vectors.
+        let whole = unsafe { self.to_int_unchecked::<i32>() };
         (whole, self - Self::from(whole))
     }
 }

@@ -20,7 +20,7 @@ use crate::simd::Simd;
 use crate::status::{Error, Result};
 
 /// Scratch of [`deposit`]: with m = min(particles, 2^21), t tiles (at most 4096, a function of region and window) and r = size of `T`,
-/// 4 r m + 2 m + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded up to 64. No more than 38 MB in `f32`, 72 MB in `f64`.
+/// 4 r m + 2 m + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded up to 64. No more than 39 MB in `f32`, 73 MB in `f64`.
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
@@ -43,7 +43,8 @@ pub fn deposit_scratch<T: Real>(region: &Region, particles: usize, window: Windo
 /// the region, `Scratch`, `Alignment`, `Hook`; `NotFinite` for a position or weight and `Outside` for a particle as above: the mesh then
 /// holds some of the particles.
 ///
-/// The same bits for any number of threads; they may depend on the region, for addition rounds. Cost: about 15 ns a particle and core.
+/// The same bits for any number of threads; they may depend on the region, for addition rounds. Cost on one core, `f32`: 16, 19, 29 and 55 ns a
+/// particle for order 1 to 4 if neighbours in memory are neighbours in space, 31 to 82 ns in random order.
 pub fn deposit<T: Real>(
     mesh: &mut [T],
     region: &Region,
@@ -79,10 +80,14 @@ pub(super) fn deposit_with<T: Real>(
     let target = Target { mesh: Shared::new(mesh), cells: Cells::new(region), frame: &frame };
     for first in (0..particles).step_by(BATCH) {
         let count = BATCH.min(particles - first);
-        sorter.sort(positions, fourth, first, count, &frame, &tiling, simd, exec)?;
+        sorter.count(positions, first, count, &frame, &tiling, simd, exec)?;
+        sorter.write(positions, fourth, first, count, &frame, simd, exec)?;
         for colour in tiling.colours() {
             exec.parallel_for(colour.len(), &|i| {
-                let records = sorter.tile(colour.tile(i));
+                let tile = colour.tile(i);
+                let records = sorter.tile(tile);
+                let [x, y] = tiling.first_cells(tile);
+                target.cells.fetch(target.mesh.as_ptr(), [x, y], records.len());
                 simd.vectorise(
                     #[inline(always)]
                     || match assignment.window {
@@ -102,6 +107,11 @@ pub(super) fn deposit_with<T: Real>(
     Ok(())
 }
 
+/// Of so many particles of higher windows, stretches are taken in turns. In lattice order particles follow each other from cell to cell, and a row
+/// that is read as a vector while its last sum, one cell off, is still on its way to the cache stops the processor for that long.
+const TURNS: usize = 4;
+const STRETCH: usize = 64;
+
 /// The mesh that is added to.
 struct Target<'a, T> {
     mesh: Shared<'a, T>,
@@ -116,33 +126,52 @@ impl<T: Real> Target<'_, T> {
     /// The particles' first cells are inside the frame's limits, and no other thread touches their cells now.
     #[inline(always)]
     unsafe fn add<const P: usize, const Q: usize>(&self, records: &[Record<T>]) {
+        let (blocks, rest) = records.as_chunks::<{ TURNS * STRETCH }>();
+        for block in blocks {
+            for i in 0..block.len() {
+                let next = if P > 2 { i % TURNS * STRETCH + i / TURNS } else { i };
+                // SAFETY: as the caller says.
+                unsafe { self.add_one::<P, Q>(&block[next]) };
+            }
+        }
+        for record in rest {
+            // SAFETY: as the caller says.
+            unsafe { self.add_one::<P, Q>(record) };
+        }
+    }
+
+    /// Adds one particle.
+    ///
+    /// # Safety
+    /// As `add`.
+    #[inline(always)]
+    unsafe fn add_one<const P: usize, const Q: usize>(&self, record: &Record<T>) {
         let mesh = self.mesh.as_ptr();
-        for record in records {
-            let touched = Touched::new::<P>(self.frame, record);
-            let [wx, wy, wz] = &touched.weight;
-            if let Some(base) = self.cells.rows::<T, P, Q>(&touched) {
-                let [x_step, y_step] = self.cells.steps();
-                for i in 0..P {
-                    let mass = record[3] * wx[i];
-                    for j in 0..P {
-                        let mass = mass * wy[j];
-                        // SAFETY: `rows` says that the row is inside the region, and this thread's alone (caller).
-                        let row = unsafe { &mut *mesh.add(base + i * x_step + j * y_step).cast::<[T; Q]>() };
-                        for k in 0..Q {
-                            row[k] += mass * wz[k];
-                        }
+        // SAFETY: as the caller says.
+        let touched = unsafe { Touched::new::<P>(self.frame, record) };
+        let [wx, wy, wz] = [0, 1, 2].map(|axis| touched.along(axis));
+        if let Some(base) = self.cells.rows::<T, P, Q>(&touched) {
+            let [x_step, y_step] = self.cells.steps();
+            for i in 0..P {
+                let mass = record[3] * wx[i];
+                for j in 0..P {
+                    let mass = mass * wy[j];
+                    // SAFETY: `rows` says that the row is inside the region, and this thread's alone (caller).
+                    let row = unsafe { &mut *mesh.add(base + i * x_step + j * y_step).cast::<[T; Q]>() };
+                    for k in 0..Q {
+                        row[k] += mass * wz[k];
                     }
                 }
-            } else {
-                for i in 0..P {
-                    let mass = record[3] * wx[i];
-                    for j in 0..P {
-                        let mass = mass * wy[j];
-                        for k in 0..P {
-                            let offset = self.cells.offset(&touched, [i, j, k]);
-                            // SAFETY: the offset of a cell of the region, this thread's alone (caller).
-                            unsafe { *mesh.add(offset) += mass * wz[k] };
-                        }
+            }
+        } else {
+            for i in 0..P {
+                let mass = record[3] * wx[i];
+                for j in 0..P {
+                    let mass = mass * wy[j];
+                    for k in 0..P {
+                        let offset = self.cells.offset(&touched, [i, j, k]);
+                        // SAFETY: the offset of a cell of the region, this thread's alone (caller).
+                        unsafe { *mesh.add(offset) += mass * wz[k] };
                     }
                 }
             }

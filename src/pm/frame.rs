@@ -39,7 +39,7 @@ pub(super) struct Frame<T> {
     side: T,
     n: i32,
     /// The cell c of particles whose first cell is the region's first, on each axis.
-    base: [i32; 3],
+    base: [i32; 4],
     /// First cells that leave room for the window, on each axis: 0 .. limit.
     pub(super) limit: [i32; 3],
 }
@@ -71,7 +71,7 @@ impl<T: Real> Frame<T> {
             add: T::from_f64(lift),
             side: T::from_f64(n as f64),
             n: index(n)?,
-            base: [0; 3],
+            base: [0; 4],
             limit: [0; 3],
         };
         for axis in 0..3 {
@@ -82,12 +82,28 @@ impl<T: Real> Frame<T> {
         Ok(frame)
     }
 
-    /// Index in the region of the first cell touched, and fraction.
+    /// Indices in the region of the first cells touched, and fractions, of a particle with coordinates v; the fourth is 0.
+    ///
+    /// # Safety
+    /// The coordinates are in [0, n).
     #[inline(always)]
-    pub(super) fn cell(&self, axis: usize, v: T) -> (i32, T) {
-        let (cell, fraction) = v.split();
-        let index = cell - self.base[axis];
-        (if index < 0 { index + self.n } else { index }, fraction)
+    pub(super) unsafe fn cells(&self, v: &[T; 4]) -> ([i32; 4], [T; 4]) {
+        let (mut index, mut fraction) = ([0; 4], [T::ZERO; 4]);
+        let v = [v[0], v[1], v[2], T::ZERO];
+        for axis in 0..4 {
+            // SAFETY: in [0, n), and n is an i32.
+            let (cell, rest) = unsafe { v[axis].split() };
+            let ahead = cell - self.base[axis];
+            index[axis] = if ahead < 0 { ahead + self.n } else { ahead };
+            fraction[axis] = rest;
+        }
+        (index, fraction)
+    }
+
+    /// Index in the region of the first cell touched on an axis.
+    fn index(&self, axis: usize, v: T) -> i32 {
+        let ahead = v.to_f64() as i32 - self.base[axis];
+        if ahead < 0 { ahead + self.n } else { ahead }
     }
 
     /// Turns one coordinate of a block of particles into v, and finds their first cells. Returns what is wrong with any of them.
@@ -101,12 +117,13 @@ impl<T: Real> Frame<T> {
             let raw = x[i] * scale + add;
             let raw = if raw < T::ZERO { raw + side } else { raw };
             let wrapped = if raw >= side { raw - side } else { raw };
-            v[i] = wrapped;
-            let cell = wrapped.split().0 - base;
-            index[i] = if cell < 0 { cell + n } else { cell };
             // A NaN fails the comparisons.
-            let inside = wrapped >= T::ZERO && wrapped < side && index[i] < limit;
-            astray |= u32::from(!inside);
+            let inside = (wrapped >= T::ZERO) & (wrapped < side);
+            v[i] = if inside { wrapped } else { T::ZERO };
+            // SAFETY: in [0, n), and n is an i32.
+            let cell = unsafe { v[i].split() }.0 - base;
+            index[i] = if cell < 0 { cell + n } else { cell };
+            astray |= u32::from(!inside) | u32::from(index[i] >= limit);
         }
         let mut wrong = 0;
         if astray != 0 {
@@ -116,27 +133,25 @@ impl<T: Real> Frame<T> {
         wrong
     }
 
-    /// As `locate`, one by one, for blocks where a particle is not simply inside.
+    /// As `locate`, one by one (v is 0 where it is not simply inside the box), for blocks with particles astray.
     #[inline(never)]
     fn locate_each(&self, axis: usize, x: &[T; BLOCK], v: &mut [T; BLOCK], index: &mut [i32; BLOCK]) -> u32 {
         let mut wrong = 0;
         for i in 0..BLOCK {
-            if !(v[i] >= T::ZERO && v[i] < self.side) {
-                if !x[i].is_finite() {
-                    v[i] = T::ZERO;
-                    index[i] = 0;
-                    wrong |= NOT_FINITE;
-                    continue;
-                }
+            if !x[i].is_finite() {
+                wrong |= NOT_FINITE;
+                continue;
+            }
+            if v[i] == T::ZERO {
                 v[i] = self.wrap(x[i]);
             }
-            index[i] = self.cell(axis, v[i]).0;
+            index[i] = self.index(axis, v[i]);
             if index[i] >= self.limit[axis] {
                 match self.nudge(axis, v[i]) {
                     Some(nudged) => v[i] = nudged,
                     None => wrong |= OUTSIDE,
                 }
-                index[i] = self.cell(axis, v[i]).0;
+                index[i] = self.index(axis, v[i]);
             }
         }
         wrong

@@ -3,7 +3,7 @@
 //! A stable counting sort in two passes over chunks of fixed length: each chunk counts its particles by tile, the counts are summed
 //! to places (tile by tile, chunk by chunk inside a tile), and each chunk writes its particles there. The order does not depend on threads.
 
-use core::sync::atomic::{AtomicU32, Ordering};
+use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
 use super::columns::{Column, Positions};
 use super::frame::{BLOCK, Frame, NOT_FINITE, OUTSIDE};
@@ -18,7 +18,7 @@ use crate::status::{Error, Result};
 pub(super) const BATCH: usize = 1 << 21;
 
 /// Particles that one chunk counts and writes.
-const CHUNK: usize = 1 << 15;
+pub(super) const CHUNK: usize = 1 << 15;
 
 /// Three coordinates v, and a fourth number.
 pub(super) type Record<T> = [T; 4];
@@ -30,8 +30,6 @@ pub(super) enum Fourth<'a, T> {
     One,
     /// Its weight.
     Weight(Column<'a, T>),
-    /// Its number in the batch, exact in either type.
-    Number,
 }
 
 /// Scratch of a sorter.
@@ -65,21 +63,61 @@ impl<'a, T: Real> Sorter<'a, T> {
         &self.records[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }
 
-    /// Sorts particles `first .. first + count`, count <= [`BATCH`]. `NotFinite` or `Outside` for what no cell can take.
-    pub(super) fn sort(
+    /// Hands the particles of each tile to `change`.
+    pub(super) fn each_tile(
+        &mut self,
+        exec: &dyn Exec,
+        change: &(dyn Fn(usize, &mut [Record<T>]) + Sync),
+    ) -> Result<()> {
+        let starts = &*self.starts;
+        let records = Shared::new(&mut *self.records);
+        exec.parallel_for(starts.len() - 1, &|tile| {
+            let (start, end) = (starts[tile] as usize, starts[tile + 1] as usize);
+            // SAFETY: tiles are disjoint parts of the batch.
+            change(tile, unsafe { records.part(start, end - start) });
+        })
+    }
+
+    /// Hands the records of the batch of `count` sorted last to `take` in the order they had before, with their numbers. Once a batch.
+    pub(super) fn unsort(
+        &mut self,
+        count: usize,
+        exec: &dyn Exec,
+        take: &(dyn Fn(usize, &Record<T>) + Sync),
+    ) -> Result<()> {
+        let tiles = self.starts.len() - 1;
+        let chunks = count.div_ceil(CHUNK);
+        let (keys, records) = (&self.keys[..count], &*self.records);
+        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        exec.parallel_for(chunks, &|chunk| {
+            let begin = chunk * CHUNK;
+            // SAFETY: chunks have counters of their own, inside the slice.
+            let ends = unsafe { counters.part(chunk * tiles, tiles) };
+            // Writing left the counters behind each tile's last particle of the chunk.
+            for (i, &key) in keys[begin..count.min(begin + CHUNK)].iter().enumerate().rev() {
+                let place = &mut ends[usize::from(key)];
+                *place -= 1;
+                take(begin + i, &records[*place as usize]);
+            }
+        })
+    }
+
+    /// First half of the sort of particles `first .. first + count`, count <= [`BATCH`]: finds their tiles. Returns how often the tile changes from
+    /// one particle to the next. `NotFinite` or `Outside` for what no cell can take.
+    pub(super) fn count(
         &mut self,
         positions: &Positions<'_, T>,
-        fourth: Fourth<'_, T>,
         first: usize,
         count: usize,
         frame: &Frame<T>,
         tiling: &Tiling,
         simd: Simd,
         exec: &dyn Exec,
-    ) -> Result<()> {
+    ) -> Result<usize> {
         let tiles = tiling.len();
         let chunks = count.div_ceil(CHUNK);
         let wrong = AtomicU32::new(0);
+        let changes = AtomicUsize::new(0);
         let keys = Shared::new(&mut self.keys[..count]);
         let counters = Shared::new(&mut self.counters[..chunks * tiles]);
         exec.parallel_for(chunks, &|chunk| {
@@ -92,8 +130,27 @@ impl<'a, T: Real> Sorter<'a, T> {
                 || count_tiles(positions, first + begin, frame, tiling, keys, counters),
             );
             wrong.fetch_or(flags, Ordering::Relaxed);
+            let changed = keys.windows(2).map(|pair| usize::from(pair[0] != pair[1])).sum();
+            changes.fetch_add(changed, Ordering::Relaxed);
         })?;
         check(&wrong)?;
+        Ok(changes.into_inner())
+    }
+
+    /// Second half: writes the particles that were counted to their places. `NotFinite` for a weight.
+    pub(super) fn write(
+        &mut self,
+        positions: &Positions<'_, T>,
+        fourth: Fourth<'_, T>,
+        first: usize,
+        count: usize,
+        frame: &Frame<T>,
+        simd: Simd,
+        exec: &dyn Exec,
+    ) -> Result<()> {
+        let tiles = self.starts.len() - 1;
+        let chunks = count.div_ceil(CHUNK);
+        let wrong = AtomicU32::new(0);
         sum(&mut self.counters[..chunks * tiles], self.starts);
         let keys = &self.keys[..count];
         let counters = Shared::new(&mut self.counters[..chunks * tiles]);
@@ -138,7 +195,7 @@ fn sum(counters: &mut [u32], starts: &mut [u32]) {
 
 /// Loads a block of up to [`BLOCK`] particles and turns it into coordinates and cells. Missing particles repeat the first one.
 #[inline(always)]
-fn block<T: Real>(
+pub(super) fn block<T: Real>(
     positions: &Positions<'_, T>,
     first: usize,
     count: usize,
@@ -220,11 +277,6 @@ impl<T: Real> Batch<'_, '_, T> {
                     unsafe { weights.load(self.first + at, keys.len(), &mut fourth) };
                     let finite = fourth.iter().fold(true, |finite, weight| finite & weight.is_finite());
                     wrong |= if finite { 0 } else { NOT_FINITE };
-                }
-                Fourth::Number => {
-                    for i in 0..BLOCK {
-                        fourth[i] = T::from_f64((at + i) as f64);
-                    }
                 }
             }
             for (i, &key) in keys.iter().enumerate() {

@@ -3,6 +3,8 @@
 //! A particle belongs to the tile of the first cell that it touches, and touches at most 3 cells more on an axis; tiles are at least 8 cells
 //! wide, so it reaches into the next tile at most. Tiles of one colour have a tile between them on each axis: they touch no common cell.
 
+use core::ops::Range;
+
 use super::frame::Frame;
 use super::region::Region;
 use crate::real::Real;
@@ -15,6 +17,7 @@ const MOST: usize = 4096;
 pub(super) struct Tiling {
     log_width: u32,
     count: [usize; 2],
+    limit: [usize; 2],
     whole: [bool; 2],
 }
 
@@ -45,7 +48,7 @@ impl Tiling {
     pub(super) fn new(region: &Region, limit: [usize; 2]) -> Self {
         let count = region.count();
         let whole = [0, 1].map(|axis| count[axis] == region.n());
-        let mut tiling = Self { log_width: 3, count: [1; 2], whole };
+        let mut tiling = Self { log_width: 3, count: [1; 2], limit, whole };
         loop {
             tiling.count = limit.map(|cells| (cells >> tiling.log_width).max(1));
             if tiling.len() <= MOST {
@@ -70,6 +73,16 @@ impl Tiling {
         let [last_x, last_y] = self.count.map(|count| count as i32 - 1);
         let (x, y) = ((x >> self.log_width).min(last_x), (y >> self.log_width).min(last_y));
         (x * (last_y + 1) + y) as u16
+    }
+
+    /// The first cells of a tile's particles on axes 0 and 1.
+    pub(super) fn first_cells(&self, tile: usize) -> [Range<usize>; 2] {
+        let at = [tile / self.count[1], tile % self.count[1]];
+        [0, 1].map(|axis| {
+            let last = at[axis] + 1 == self.count[axis];
+            let end = if last { self.limit[axis] } else { (at[axis] + 1) << self.log_width };
+            at[axis] << self.log_width..end
+        })
     }
 
     /// Colours: on each axis even and odd tiles, and where an odd number closes a ring, the last tile alone.
