@@ -1,6 +1,6 @@
 //! The bispectrum stage by stage: triangle counts, shell transforms, triple products.
 //!
-//! Default: n = 128, 20 shells of 3 k_f; FIXPAIR_BENCH_LARGE=1: n = 360, 40 shells, 6350 triangles (8.1 GB). Each stage's median over
+//! Default: n = 128, 20 shells of 3 k_f; FIXPAIR_BENCH_LARGE=1: n = 360, 40 shells, 6350 triangles (7.8 GB). Each stage's median over
 //! a few runs, in CPU seconds. Useful flops are 2 for each triangle and cell. The peak is that of separate multiplications and additions in registers of 256 bits,
 //! measured here: what code whose bits must be the same everywhere can reach. FIXPAIR_BENCH_PYTHON=<python with pySpectrum>
 //! runs the peer on the same mesh and shells.
@@ -91,8 +91,8 @@ fn peak() -> f64 {
     median(
         (0..5)
             .map(|_| {
-                // SAFETY: the processor has AVX2.
                 let time = seconds(|| {
+                    // SAFETY: the processor has AVX2.
                     std::hint::black_box(unsafe { work(std::hint::black_box(1.0)) });
                 });
                 flops / time / 1e9
