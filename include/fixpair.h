@@ -1373,7 +1373,7 @@ fixpair_status_t fixpair_squeezed_triangles(uint32_t *triangles,
                                             size_t shells);
 
 /*
- * Scratch of fixpair_triangle_counts: for 40 shells of 3 k_f, n = 360 and their 6350 triangles 27 MB.
+ * Scratch of fixpair_triangle_counts: for 40 shells of 3 k_f, n = 360 and their 6350 triangles 25 MB.
  *
  * Out: scratch
  * In:  triangles, edges, n as fixpair_triangle_counts
@@ -1444,7 +1444,7 @@ fixpair_status_t fixpair_shell_modes_f32(float *out,
 
 /*
  * Scratch of fixpair_bispectrum_sums_f64. For T triangles, S shells, cells of b = 8 bytes (4 in single precision) and w = 64, or the brick's x
- * planes if those are fewer: 396 T + 4 S + w (520 S b + 80 T) bytes and a few cache lines.
+ * planes if those are fewer: 392 T + 4 S + w (520 S b + 80 T) bytes and a few cache lines.
  *
  * Out: scratch
  * In:  brick          of configuration space
