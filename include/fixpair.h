@@ -2006,7 +2006,7 @@ fixpair_status_t fixpair_squeezed_triangles(uint32_t *triangles,
                                             size_t shells);
 
 /*
- * Scratch of fixpair_triangle_counts: for 40 shells of 3 k_f, n = 360 and their 6350 triangles 27 MB.
+ * Scratch of fixpair_triangle_counts: for 40 shells of 3 k_f, n = 360 and their 6350 triangles 25 MB.
  *
  * Out: scratch
  * In:  triangles, edges, n as fixpair_triangle_counts
@@ -2077,7 +2077,7 @@ fixpair_status_t fixpair_shell_modes_f32(float *out,
 
 /*
  * Scratch of fixpair_bispectrum_sums_f64. For T triangles, S shells, cells of b = 8 bytes (4 in single precision) and w = 64, or the brick's x
- * planes if those are fewer: 396 T + 4 S + w (520 S b + 80 T) bytes and a few cache lines.
+ * planes if those are fewer: 392 T + 4 S + w (520 S b + 80 T) bytes and a few cache lines.
  *
  * Out: scratch
  * In:  brick          of configuration space
@@ -2179,7 +2179,7 @@ fixpair_status_t fixpair_bispectrum_scratch_f32(struct fixpair_layout *scratch,
  * there is.
  *
  * With a mesh for each shell each shell is transformed once. With fewer, at least 3, shells come and go: for 40 shells and all their
- * triangles 20 meshes take some 190 transforms, 10 meshes 490, 3 meshes 6200. The bits do not depend on it. Where fft holds a
+ * triangles 20 meshes take 116 transforms, 10 meshes 408, 3 meshes 5474. The bits do not depend on it. Where fft holds a
  * part of the mesh, all processes call with as many meshes and the same triangles, and add their sums.
  *
  * In/Out: sums        FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first

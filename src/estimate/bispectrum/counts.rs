@@ -106,7 +106,7 @@ fn points(z: usize) -> usize {
     row_start((z + 1).next_multiple_of(ROWS))
 }
 
-/// Scratch of [`triangle_counts`]: for 40 shells of 3 k_f, n = 360 and their 6350 triangles 27 MB.
+/// Scratch of [`triangle_counts`]: for 40 shells of 3 k_f, n = 360 and their 6350 triangles 25 MB.
 ///
 /// # Errors
 /// As [`triangle_counts`].

@@ -217,7 +217,7 @@ impl<T: Real> Plane<'_, '_, T> {
 
 /// Scratch of [`bispectrum_sums`] over `shells` shells and `triangles` triangles.
 ///
-/// For T triangles, S shells and w = 64 planes, or the brick's if those are fewer: 396 T + 4 S + w (520 S b + 64 T + 16 T) bytes and a few
+/// For T triangles, S shells and w = 64 planes, or the brick's if those are fewer: 392 T + 4 S + w (520 S b + 64 T + 16 T) bytes and a few
 /// cache lines, b = 4 or 8 bytes being a cell.
 ///
 /// # Errors
