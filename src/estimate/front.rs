@@ -15,6 +15,8 @@ pub(super) const FRONT_TERMS: u64 = 1 << 26;
 /// 2^27: from one part to the next.
 const STEP: f64 = 134_217_728.0;
 
+const SIGN: u64 = 1 << 63;
+
 /// Exact sums of four numbers each. All zero is empty.
 #[derive(Clone, Copy)]
 #[repr(C, align(32))]
@@ -39,22 +41,20 @@ impl Front {
         let mut rest = *term;
         let mut parts = [[0.0; 4]; 3];
         for part in &mut parts {
-            for lane in 0..4 {
-                part[lane] = (rest[lane] + place) - place;
-                rest[lane] -= part[lane];
-            }
+            *part = core::array::from_fn(|lane| (rest[lane] + place) - place);
+            rest = core::array::from_fn(|lane| rest[lane] - part[lane]);
             place *= 1.0 / STEP;
         }
-        let mut fits = true;
+        // Nothing is left, and each |term| is below the limit: positive numbers are in the order of their bits, NaN above all.
+        let mut bad = 0;
         for lane in 0..4 {
-            // A NaN compares false.
-            fits &= (term[lane].abs() < limit) & (rest[lane] == 0.0);
+            let below = (term[lane].to_bits() & !SIGN).wrapping_sub(limit.to_bits());
+            bad |= rest[lane].to_bits() | (!below & SIGN);
         }
+        let fits = bad == 0;
         if fits {
             for (sum, part) in self.parts.iter_mut().zip(&parts) {
-                for lane in 0..4 {
-                    sum[lane] += part[lane];
-                }
+                *sum = core::array::from_fn(|lane| sum[lane] + part[lane]);
             }
         }
         fits

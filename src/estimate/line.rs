@@ -264,28 +264,47 @@ impl Lines<'_> {
     }
 
     /// Calls `add(bin, [count, sum of the first coordinate, sum of the second])` for each run inside a bin.
+    #[inline(always)]
     pub(super) fn geometry(&self, place: Place, line: &mut Line<'_>, mut add: impl FnMut(usize, [f64; 3])) {
         let (points, runs) = self.bins(place, line);
-        let mut sum = [0.0_f64; 4];
-        let mut run = 0;
-        for m in 0..points {
-            let square = (place.square + self.z_square[m]) as f64;
-            let (first, second) = match self.checked.second {
-                Second::None => (square, 0.0),
-                Second::Cosine(_) => (square, math::sqrt(line.mu_square[m])),
-                Second::Parallel(_) => {
+        let (length, weight) = (line.length, &self.weight[..points]);
+        let (first, second) = line.products.split_at_mut(length);
+        let (first, second) = (&mut first[..points], &mut second[..points]);
+        match self.checked.second {
+            Second::Parallel(_) => {
+                for m in 0..points {
                     let (rest, parallel) = self.split(place, self.z_square[m], self.z[m]);
-                    (rest, parallel.abs())
+                    (first[m], second[m]) = (rest, parallel.abs());
                 }
-            };
-            let weight = self.weight[m];
-            let point = [weight, weight * math::sqrt(first), weight * second, 0.0];
-            run += usize::from(line.keep[m] == 0);
-            for lane in 0..4 {
-                sum[lane] = f64::from_bits(sum[lane].to_bits() & line.keep[m]) + point[lane];
             }
-            line.runs[run] = sum;
+            Second::None | Second::Cosine(_) => {
+                let square = place.square as f64;
+                first.iter_mut().zip(self.z).for_each(|(first, z)| *first = square + z * z);
+                if matches!(self.checked.second, Second::None) {
+                    second.fill(0.0);
+                } else {
+                    second.copy_from_slice(&line.mu_square[..points]);
+                    roots(second);
+                }
+            }
+        }
+        roots(first);
+        let mut sum = [0.0_f64; 3];
+        let mut run = 0;
+        for (((&keep, &weight), &first), &second) in line.keep.iter().zip(weight).zip(&*first).zip(&*second) {
+            run += usize::from(keep == 0);
+            let point = [weight, weight * first, weight * second];
+            sum = core::array::from_fn(|i| f64::from_bits(sum[i].to_bits() & keep) + point[i]);
+            line.runs[run][..3].copy_from_slice(&sum);
         }
         line.for_each_run(0, runs, |bin, sums| add(bin, [sums[0], sums[1], sums[2]]));
     }
+}
+
+/// Square roots, in place.
+#[inline(always)]
+fn roots(values: &mut [f64]) {
+    let (fours, rest) = values.as_chunks_mut::<4>();
+    fours.iter_mut().for_each(math::sqrt_in_place);
+    rest.iter_mut().for_each(|value| *value = math::sqrt(*value));
 }

@@ -229,9 +229,14 @@ pub(super) fn sweep<S: Source>(
             // The memory was laid out for it.
             let Ok(mut line) = line_of(piece) else { return };
             let mut add = |place: Place, times: i64| {
-                lines.geometry(place, &mut line, |bin, stretch| {
-                    add_geometry(&mut partial[bin], stretch, times);
-                });
+                simd.vectorise(
+                    #[inline(always)]
+                    || {
+                        lines.geometry(place, &mut line, |bin, stretch| {
+                            add_geometry(&mut partial[bin], stretch, times);
+                        });
+                    },
+                );
             };
             match &histogram {
                 Some(histogram) => {
