@@ -13,12 +13,13 @@ use std::time::{Duration, Instant};
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use fixpair::estimate::binning::{Bin, Binning, Second, normalise, read_sums};
-use fixpair::estimate::compensation::{Compensation, Window};
+use fixpair::estimate::compensation::Compensation;
 use fixpair::estimate::correlation::{correlation_sums, correlation_sums_scratch};
 use fixpair::estimate::power::{power_sums, power_sums_scratch};
 use fixpair::exec::Serial;
 use fixpair::fft::{Fft3, Tables, Transform, recommended_padding};
 use fixpair::mesh::{Brick, Space};
+use fixpair::pm::Window;
 use fixpair::real::Real;
 use fixpair::scratch::Layout;
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 14] = [
+const SECTIONS: [(&str, &str); 15] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -15,6 +15,7 @@ const SECTIONS: [(&str, &str); 14] = [
     ("initial", "Initial conditions in one call"),
     ("stages", "Initial conditions stage by stage"),
     ("particles", "Particles"),
+    ("pm", "Deposit and read-out"),
     ("binning", "Bins of spectra and correlation functions"),
     ("power", "Power spectrum"),
     ("correlation", "Correlation function"),

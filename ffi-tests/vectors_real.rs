@@ -2,7 +2,7 @@
 
 use fixpair::cosmology::{Convention, Cosmology, Linear, Table};
 use fixpair::estimate::binning::{Bin, Binning, normalise, read_sums};
-use fixpair::estimate::compensation::{Compensation, Window};
+use fixpair::estimate::compensation::Compensation;
 use fixpair::estimate::power::{power_sums, power_sums_scratch};
 use fixpair::exec::Serial;
 use fixpair::fft::{Fft3, Tables, Transform, recommended_padding};
@@ -17,6 +17,7 @@ use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{
     Amplitude, Nyquist, Phase, Realisation, impose, unit_modes_from_field, white_modes, white_modes_coloured,
 };
+use fixpair::pm::Window;
 use fixpair::real::Real;
 use fixpair::scratch::Layout;
 

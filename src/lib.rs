@@ -31,6 +31,8 @@ pub mod cosmology;
 
 pub mod initial;
 
+pub mod pm;
+
 pub mod estimate;
 
 pub mod capi;

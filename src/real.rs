@@ -40,6 +40,11 @@ pub trait Real:
     fn to_f64(self) -> f64;
     /// Neither NaN nor infinite.
     fn is_finite(self) -> bool;
+    /// Integer part and remainder, both exact.
+    ///
+    /// # Safety
+    /// 0 <= self < 2^31.
+    unsafe fn split(self) -> (i32, Self);
 }
 
 impl Real for f32 {
@@ -61,6 +66,13 @@ impl Real for f32 {
     fn is_finite(self) -> bool {
         self.is_finite()
     }
+
+    #[inline(always)]
+    unsafe fn split(self) -> (i32, Self) {
+        // SAFETY: in range (caller). A checked conversion would keep loops from becoming vectors.
+        let whole = unsafe { self.to_int_unchecked::<i32>() };
+        (whole, self - whole as Self)
+    }
 }
 
 impl Real for f64 {
@@ -81,5 +93,12 @@ impl Real for f64 {
     #[inline(always)]
     fn is_finite(self) -> bool {
         self.is_finite()
+    }
+
+    #[inline(always)]
+    unsafe fn split(self) -> (i32, Self) {
+        // SAFETY: in range (caller). A checked conversion would keep loops from becoming vectors.
+        let whole = unsafe { self.to_int_unchecked::<i32>() };
+        (whole, self - Self::from(whole))
     }
 }

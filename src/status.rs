@@ -39,6 +39,8 @@ pub enum Error {
     Thread = -15,
     /// An iteration did not reach the accuracy that its documentation promises.
     Convergence = -16,
+    /// A particle lies outside the region of cells, or so near its edge that its window reaches beyond it.
+    Outside = -17,
 }
 
 /// What every kernel returns.
@@ -46,7 +48,7 @@ pub type Result<T> = core::result::Result<T, Error>;
 
 impl Error {
     /// All errors, in the order of their numbers.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Null,
         Self::Length,
         Self::Alignment,
@@ -63,6 +65,7 @@ impl Error {
         Self::Choice,
         Self::Thread,
         Self::Convergence,
+        Self::Outside,
     ];
 
     /// The number that C sees.
@@ -104,6 +107,9 @@ impl Error {
             }
             Self::Convergence => {
                 c"an iteration did not converge: the parameters are too extreme for the stated accuracy"
+            }
+            Self::Outside => {
+                c"a particle lies outside the brick: add ghost planes or send it to the process whose it is"
             }
         }
     }

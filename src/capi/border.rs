@@ -146,6 +146,11 @@ impl Border {
         unsafe { self.write(pointer.cast::<u8>(), bytes) }
     }
 
+    /// Elements `stride` apart, to be read.
+    pub(super) fn read_strided<T>(&mut self, pointer: *const T, stride: usize, count: usize) -> Result<()> {
+        self.enter(pointer, stride, count, false)
+    }
+
     /// Elements `stride` apart, to be written.
     pub(super) fn strided<T>(&mut self, pointer: *mut T, stride: usize, count: usize) -> Result<()> {
         self.enter(pointer.cast_const(), stride, count, true)

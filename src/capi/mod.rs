@@ -18,6 +18,7 @@ pub mod mesh;
 pub mod mode_table;
 pub mod noise;
 pub mod particles;
+pub mod pm;
 pub mod power;
 pub mod stages;
 pub mod status;

@@ -42,6 +42,8 @@ pub const FIXPAIR_ERROR_CHOICE: i32 = -14;
 pub const FIXPAIR_ERROR_THREAD: i32 = -15;
 /// An iteration did not converge.
 pub const FIXPAIR_ERROR_CONVERGENCE: i32 = -16;
+/// A particle lies outside the brick of cells, or its window reaches beyond it.
+pub const FIXPAIR_ERROR_OUTSIDE: i32 = -17;
 
 pub(super) fn code(result: Result<()>) -> fixpair_status_t {
     result.map_or_else(Error::code, |()| FIXPAIR_OK)

@@ -13,35 +13,7 @@
 
 use core::f64::consts::PI;
 
-use crate::status::{Error, Result};
-
-/// How particles were assigned to cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(i32)]
-pub enum Window {
-    /// NGP: one cell.
-    NearestGridPoint = 1,
-    /// CIC: 2 cells an axis.
-    CloudInCell = 2,
-    /// TSC: 3 cells an axis.
-    TriangularShapedCloud = 3,
-    /// PCS: 4 cells an axis.
-    PiecewiseCubicSpline = 4,
-}
-
-impl TryFrom<i32> for Window {
-    type Error = Error;
-
-    fn try_from(order: i32) -> Result<Self> {
-        match order {
-            1 => Ok(Self::NearestGridPoint),
-            2 => Ok(Self::CloudInCell),
-            3 => Ok(Self::TriangularShapedCloud),
-            4 => Ok(Self::PiecewiseCubicSpline),
-            _ => Err(Error::Choice),
-        }
-    }
-}
+use crate::pm::Window;
 
 /// What the modes of a field are multiplied by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,17 +58,10 @@ impl Compensation {
 mod tests {
     use super::*;
 
-    const WINDOWS: [Window; 4] = [
-        Window::NearestGridPoint,
-        Window::CloudInCell,
-        Window::TriangularShapedCloud,
-        Window::PiecewiseCubicSpline,
-    ];
-
     #[test]
     fn closed_forms_are_the_sums_over_images() {
         let n = 32;
-        for window in WINDOWS {
+        for window in Window::ALL {
             let order = window as i32;
             for m in 0..=n / 2 {
                 let images = 40_000;
@@ -118,7 +83,7 @@ mod tests {
 
     #[test]
     fn the_window_is_undone() {
-        for window in WINDOWS {
+        for window in Window::ALL {
             let nyquist = Compensation::Window(window).factor(8, 16);
             assert!((nyquist - (PI / 2.0).powi(window as i32)).abs() < 1e-14);
             assert_eq!(Compensation::Window(window).factor(0, 16), 1.0);

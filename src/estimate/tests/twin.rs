@@ -6,11 +6,11 @@ use std::vec::Vec;
 
 use super::*;
 use crate::estimate::binning::Second;
-use crate::estimate::compensation::Window;
 use crate::estimate::correlation::{correlation_sums, correlation_sums_scratch};
 use crate::estimate::power::power_sums_on;
 use crate::exec::Threads;
 use crate::mesh::Space;
+use crate::pm::Window;
 use crate::reference::power::{Slow, correlation, power};
 use crate::simd::Simd;
 use crate::status::Error;

@@ -1,0 +1,99 @@
+//! The cells that one particle touches: their weights and where they lie.
+
+use core::ops::Range;
+
+use super::frame::Frame;
+use super::region::Region;
+use super::sort::Record;
+use super::window::weights;
+use crate::real::Real;
+
+/// A region's memory, and how its axes close.
+#[derive(Clone, Copy)]
+pub(super) struct Cells {
+    count: [usize; 3],
+    stride: [usize; 3],
+}
+
+/// A particle on its region: index of the first cell on each axis, and weights by number and axis.
+pub(super) struct Touched<T> {
+    first: [usize; 3],
+    weight: [[T; 4]; 4],
+}
+
+impl<T: Real> Touched<T> {
+    /// # Safety
+    /// The record is one that a sorter made for this frame.
+    #[inline(always)]
+    pub(super) unsafe fn new<const P: usize>(frame: &Frame<T>, record: &Record<T>) -> Self {
+        // SAFETY: sorters make coordinates in [0, n).
+        let (index, fraction) = unsafe { frame.cells(record) };
+        let first = [index[0] as usize, index[1] as usize, index[2] as usize];
+        Self { first, weight: weights::<T, P>(&fraction) }
+    }
+
+    /// Weights along an axis.
+    #[inline(always)]
+    pub(super) fn along(&self, axis: usize) -> [T; 4] {
+        core::array::from_fn(|k| self.weight[k][axis])
+    }
+}
+
+impl Cells {
+    pub(super) fn new(region: &Region) -> Self {
+        Self { count: region.count(), stride: region.stride() }
+    }
+
+    /// Offsets of the first of the P x P rows of Q reals that a particle touches, if none of them runs over an edge and rows have unit
+    /// stride; row (i, j) then begins i stride[0] + j stride[1] further.
+    #[inline(always)]
+    pub(super) fn rows<T, const P: usize, const Q: usize>(&self, touched: &Touched<T>) -> Option<usize> {
+        let [x, y, z] = touched.first;
+        let inside = (x + P <= self.count[0]) & (y + P <= self.count[1]) & (z + Q <= self.count[2]);
+        if inside & (self.stride[2] == 1) { Some(x * self.stride[0] + y * self.stride[1] + z) } else { None }
+    }
+
+    /// Asks the cache for the rows in which particles of a tile begin, where they are many enough to use most lines: in random order each would
+    /// wait for memory on its own.
+    pub(super) fn fetch<T>(&self, mesh: *const T, [x, y]: [Range<usize>; 2], particles: usize) {
+        const LINE: usize = 64;
+        let per_line = LINE / size_of::<T>();
+        let lines = self.count[2].div_ceil(per_line);
+        if self.stride[2] != 1 || 2 * particles < x.len() * y.len() * lines {
+            return;
+        }
+        for x in x {
+            for y in y.clone() {
+                let row = x * self.stride[0] + y * self.stride[1];
+                for line in 0..lines {
+                    prefetch(mesh.wrapping_add(row + line * per_line));
+                }
+            }
+        }
+    }
+
+    /// From one row to the next on axes 0 and 1.
+    #[inline(always)]
+    pub(super) const fn steps(&self) -> [usize; 2] {
+        [self.stride[0], self.stride[1]]
+    }
+
+    /// Offset of cell (i, j, k) of those that a particle touches, in any layout and round any edge.
+    #[inline(always)]
+    pub(super) fn offset<T>(&self, touched: &Touched<T>, cell: [usize; 3]) -> usize {
+        (0..3).map(|axis| (touched.first[axis] + cell[axis]) % self.count[axis] * self.stride[axis]).sum()
+    }
+}
+
+/// A hint, which changes nothing but time.
+#[inline(always)]
+fn prefetch<T>(address: *const T) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use core::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
+        // SAFETY: prefetches of any address do no harm, and every x86-64 has the instruction.
+        unsafe { _mm_prefetch::<_MM_HINT_T1>(address.cast()) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = address;
+}

@@ -1,0 +1,291 @@
+//! Batches of particles, sorted by tile.
+//!
+//! A stable counting sort in two passes over chunks of fixed length: each chunk counts its particles by tile, the counts are summed
+//! to places (tile by tile, chunk by chunk inside a tile), and each chunk writes its particles there. The order does not depend on threads.
+
+use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+
+use super::columns::{Column, Positions};
+use super::frame::{BLOCK, Frame, NOT_FINITE, OUTSIDE};
+use super::tiles::Tiling;
+use crate::exec::{Exec, Shared};
+use crate::real::Real;
+use crate::scratch::{Arena, Layout};
+use crate::simd::Simd;
+use crate::status::{Error, Result};
+
+/// Particles sorted at a time. Fewer would visit the mesh more often, more would leave the last cache.
+pub(super) const BATCH: usize = 1 << 21;
+
+/// Particles that one chunk counts and writes.
+pub(super) const CHUNK: usize = 1 << 15;
+
+/// Three coordinates v, and a fourth number.
+pub(super) type Record<T> = [T; 4];
+
+/// What goes with the coordinates of a particle.
+#[derive(Clone, Copy)]
+pub(super) enum Fourth<'a, T> {
+    /// Nothing: 1.
+    One,
+    /// Its weight.
+    Weight(Column<'a, T>),
+}
+
+/// Scratch of a sorter.
+pub(super) fn layout<T: Real>(particles: usize, tiles: usize) -> Result<Layout> {
+    let batch = particles.min(BATCH);
+    let counters = batch.div_ceil(CHUNK).checked_mul(tiles).ok_or(Error::Overflow)?;
+    Layout::EMPTY.and::<Record<T>>(batch)?.and::<u16>(batch)?.and::<u32>(counters)?.and::<u32>(tiles + 1)
+}
+
+/// Memory for one batch.
+pub(super) struct Sorter<'a, T> {
+    records: &'a mut [Record<T>],
+    keys: &'a mut [u16],
+    counters: &'a mut [u32],
+    starts: &'a mut [u32],
+}
+
+impl<'a, T: Real> Sorter<'a, T> {
+    pub(super) fn new(arena: &mut Arena<'a>, particles: usize, tiles: usize) -> Result<Self> {
+        let batch = particles.min(BATCH);
+        Ok(Self {
+            records: arena.take(batch)?,
+            keys: arena.take(batch)?,
+            counters: arena.take(batch.div_ceil(CHUNK) * tiles)?,
+            starts: arena.take(tiles + 1)?,
+        })
+    }
+
+    /// Particles of a tile of the sorted batch.
+    pub(super) fn tile(&self, tile: usize) -> &[Record<T>] {
+        &self.records[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+
+    /// Hands the particles of each tile to `change`.
+    pub(super) fn each_tile(
+        &mut self,
+        exec: &dyn Exec,
+        change: &(dyn Fn(usize, &mut [Record<T>]) + Sync),
+    ) -> Result<()> {
+        let starts = &*self.starts;
+        let records = Shared::new(&mut *self.records);
+        exec.parallel_for(starts.len() - 1, &|tile| {
+            let (start, end) = (starts[tile] as usize, starts[tile + 1] as usize);
+            // SAFETY: tiles are disjoint parts of the batch.
+            change(tile, unsafe { records.part(start, end - start) });
+        })
+    }
+
+    /// Hands the records of the batch of `count` sorted last to `take` in the order they had before, with their numbers. Once a batch.
+    pub(super) fn unsort(
+        &mut self,
+        count: usize,
+        exec: &dyn Exec,
+        take: &(dyn Fn(usize, &Record<T>) + Sync),
+    ) -> Result<()> {
+        let tiles = self.starts.len() - 1;
+        let chunks = count.div_ceil(CHUNK);
+        let (keys, records) = (&self.keys[..count], &*self.records);
+        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        exec.parallel_for(chunks, &|chunk| {
+            let begin = chunk * CHUNK;
+            // SAFETY: chunks have counters of their own, inside the slice.
+            let ends = unsafe { counters.part(chunk * tiles, tiles) };
+            // Writing left the counters behind each tile's last particle of the chunk.
+            for (i, &key) in keys[begin..count.min(begin + CHUNK)].iter().enumerate().rev() {
+                let place = &mut ends[usize::from(key)];
+                *place -= 1;
+                take(begin + i, &records[*place as usize]);
+            }
+        })
+    }
+
+    /// First half of the sort of particles `first .. first + count`, count <= [`BATCH`]: finds their tiles. Returns how often the tile changes from
+    /// one particle to the next. `NotFinite` or `Outside` for what no cell can take.
+    pub(super) fn count(
+        &mut self,
+        positions: &Positions<'_, T>,
+        first: usize,
+        count: usize,
+        frame: &Frame<T>,
+        tiling: &Tiling,
+        simd: Simd,
+        exec: &dyn Exec,
+    ) -> Result<usize> {
+        let tiles = tiling.len();
+        let chunks = count.div_ceil(CHUNK);
+        let wrong = AtomicU32::new(0);
+        let changes = AtomicUsize::new(0);
+        let keys = Shared::new(&mut self.keys[..count]);
+        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        exec.parallel_for(chunks, &|chunk| {
+            let begin = chunk * CHUNK;
+            let length = CHUNK.min(count - begin);
+            // SAFETY: chunks have keys and counters of their own, inside the slices.
+            let (keys, counters) = unsafe { (keys.part(begin, length), counters.part(chunk * tiles, tiles)) };
+            let flags = simd.vectorise(
+                #[inline(always)]
+                || count_tiles(positions, first + begin, frame, tiling, keys, counters),
+            );
+            wrong.fetch_or(flags, Ordering::Relaxed);
+            let changed = keys.windows(2).map(|pair| usize::from(pair[0] != pair[1])).sum();
+            changes.fetch_add(changed, Ordering::Relaxed);
+        })?;
+        check(&wrong)?;
+        Ok(changes.into_inner())
+    }
+
+    /// Second half: writes the particles that were counted to their places. `NotFinite` for a weight.
+    pub(super) fn write(
+        &mut self,
+        positions: &Positions<'_, T>,
+        fourth: Fourth<'_, T>,
+        first: usize,
+        count: usize,
+        frame: &Frame<T>,
+        simd: Simd,
+        exec: &dyn Exec,
+    ) -> Result<()> {
+        let tiles = self.starts.len() - 1;
+        let chunks = count.div_ceil(CHUNK);
+        let wrong = AtomicU32::new(0);
+        sum(&mut self.counters[..chunks * tiles], self.starts);
+        let keys = &self.keys[..count];
+        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        let records = Shared::new(&mut *self.records);
+        exec.parallel_for(chunks, &|chunk| {
+            let begin = chunk * CHUNK;
+            let length = CHUNK.min(count - begin);
+            // SAFETY: chunks have counters of their own, inside the slice.
+            let places = unsafe { counters.part(chunk * tiles, tiles) };
+            let keys = &keys[begin..begin + length];
+            let batch = Batch { positions, fourth, first, begin };
+            let flags = simd.vectorise(
+                #[inline(always)]
+                || batch.write(frame, keys, places, &records),
+            );
+            wrong.fetch_or(flags, Ordering::Relaxed);
+        })?;
+        check(&wrong)
+    }
+}
+
+fn check(wrong: &AtomicU32) -> Result<()> {
+    match wrong.load(Ordering::Relaxed) {
+        0 => Ok(()),
+        OUTSIDE => Err(Error::Outside),
+        _ => Err(Error::NotFinite),
+    }
+}
+
+/// Turns counts by chunk and tile into first places, and notes where each tile starts.
+fn sum(counters: &mut [u32], starts: &mut [u32]) {
+    let tiles = starts.len() - 1;
+    let mut place = 0;
+    for tile in 0..tiles {
+        starts[tile] = place;
+        for counter in counters.iter_mut().skip(tile).step_by(tiles) {
+            place += core::mem::replace(counter, place);
+        }
+    }
+    starts[tiles] = place;
+}
+
+/// Loads a block of up to [`BLOCK`] particles and turns it into coordinates and cells. Missing particles repeat the first one.
+#[inline(always)]
+pub(super) fn block<T: Real>(
+    positions: &Positions<'_, T>,
+    first: usize,
+    count: usize,
+    frame: &Frame<T>,
+    v: &mut [[T; BLOCK]; 3],
+    index: &mut [[i32; BLOCK]; 3],
+) -> u32 {
+    let mut wrong = 0;
+    for axis in 0..3 {
+        debug_assert!(first + count <= positions.len() && count <= BLOCK);
+        // SAFETY: the block lies inside the particles, and is no longer than the array.
+        unsafe { positions.load(axis, first, count, &mut v[axis]) };
+        if count < BLOCK {
+            let repeated = v[axis][0];
+            v[axis][count..].fill(repeated);
+        }
+        wrong |= frame.locate(axis, &mut v[axis], &mut index[axis]);
+    }
+    wrong
+}
+
+/// First pass: keys of a chunk, and how many particles each tile gets from it.
+#[inline(always)]
+fn count_tiles<T: Real>(
+    positions: &Positions<'_, T>,
+    first: usize,
+    frame: &Frame<T>,
+    tiling: &Tiling,
+    keys: &mut [u16],
+    counters: &mut [u32],
+) -> u32 {
+    counters.fill(0);
+    let mut wrong = 0;
+    let (mut v, mut index) = ([[T::ZERO; BLOCK]; 3], [[0; BLOCK]; 3]);
+    for (b, keys) in keys.chunks_mut(BLOCK).enumerate() {
+        wrong |= block(positions, first + b * BLOCK, keys.len(), frame, &mut v, &mut index);
+        let mut key = [0; BLOCK];
+        for i in 0..BLOCK {
+            key[i] = tiling.tile(index[0][i], index[1][i]);
+        }
+        keys.copy_from_slice(&key[..keys.len()]);
+        if wrong == 0 {
+            for &key in &*keys {
+                counters[usize::from(key)] += 1;
+            }
+        }
+    }
+    wrong
+}
+
+/// One chunk of a batch.
+struct Batch<'a, 'b, T> {
+    positions: &'a Positions<'b, T>,
+    fourth: Fourth<'b, T>,
+    first: usize,
+    begin: usize,
+}
+
+impl<T: Real> Batch<'_, '_, T> {
+    /// Second pass: writes the chunk's particles to their places.
+    #[inline(always)]
+    fn write(
+        &self,
+        frame: &Frame<T>,
+        keys: &[u16],
+        places: &mut [u32],
+        records: &Shared<'_, Record<T>>,
+    ) -> u32 {
+        let mut wrong = 0;
+        let (mut v, mut index) = ([[T::ZERO; BLOCK]; 3], [[0; BLOCK]; 3]);
+        let mut fourth = [T::ONE; BLOCK];
+        for (b, keys) in keys.chunks(BLOCK).enumerate() {
+            let at = self.begin + b * BLOCK;
+            block(self.positions, self.first + at, keys.len(), frame, &mut v, &mut index);
+            match self.fourth {
+                Fourth::One => {}
+                Fourth::Weight(weights) => {
+                    // SAFETY: there are as many weights as positions, and the block is no longer than the array.
+                    unsafe { weights.load(self.first + at, keys.len(), &mut fourth) };
+                    let finite = fourth.iter().fold(true, |finite, weight| finite & weight.is_finite());
+                    wrong |= if finite { 0 } else { NOT_FINITE };
+                }
+            }
+            for (i, &key) in keys.iter().enumerate() {
+                let place = &mut places[usize::from(key)];
+                // SAFETY: the first pass counted this particle for this tile and chunk, so the place is inside the batch and its own.
+                unsafe { records.part(*place as usize, 1)[0] = [v[0][i], v[1][i], v[2][i], fourth[i]] };
+                *place += 1;
+            }
+        }
+        wrong
+    }
+}
