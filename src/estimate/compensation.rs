@@ -58,17 +58,10 @@ impl Compensation {
 mod tests {
     use super::*;
 
-    const WINDOWS: [Window; 4] = [
-        Window::NearestGridPoint,
-        Window::CloudInCell,
-        Window::TriangularShapedCloud,
-        Window::PiecewiseCubicSpline,
-    ];
-
     #[test]
     fn closed_forms_are_the_sums_over_images() {
         let n = 32;
-        for window in WINDOWS {
+        for window in Window::ALL {
             let order = window as i32;
             for m in 0..=n / 2 {
                 let images = 40_000;
@@ -90,7 +83,7 @@ mod tests {
 
     #[test]
     fn the_window_is_undone() {
-        for window in WINDOWS {
+        for window in Window::ALL {
             let nyquist = Compensation::Window(window).factor(8, 16);
             assert!((nyquist - (PI / 2.0).powi(window as i32)).abs() < 1e-14);
             assert_eq!(Compensation::Window(window).factor(0, 16), 1.0);

@@ -126,25 +126,14 @@ impl<T: Real> Source for Separations<'_, T> {
     }
 
     #[inline(always)]
-    fn row(
-        &self,
-        spectrum: usize,
-        _: [usize; 2],
-        offset: usize,
-        even: &mut [f64],
-        odd: &mut [f64],
-        with_odd: bool,
-    ) {
+    fn row(&self, spectrum: usize, _: [usize; 2], offset: usize, _: bool, products: &mut [f64]) {
         let mesh = &self.meshes[spectrum][offset..];
         if self.stride == 1 {
-            even.iter_mut().zip(mesh).for_each(|(even, value)| *even = value.to_f64());
+            products.iter_mut().zip(mesh).for_each(|(product, value)| *product = value.to_f64());
         } else {
-            for (m, even) in even.iter_mut().enumerate() {
-                *even = mesh[m * self.stride].to_f64();
+            for (m, product) in products.iter_mut().enumerate() {
+                *product = mesh[m * self.stride].to_f64();
             }
-        }
-        if with_odd {
-            odd.copy_from_slice(even);
         }
     }
 }

@@ -39,19 +39,24 @@ pub(super) struct Line<'a> {
     bin: &'a mut [u32],
     /// Bin of each run, counted from 1 (0 is outside); runs too count from 1.
     run_bin: &'a mut [u32],
-    pub(super) runs: &'a mut [[f64; 4]],
+    /// Sums of runs: those of a first row, of a second, ...
+    runs: &'a mut [[f64; 4]],
     /// mu^2 and mu, where multipoles or wedges need them.
     mu_square: &'a mut [f64],
     mu: &'a mut [f64],
-    pub(super) even: &'a mut [f64],
-    pub(super) odd: &'a mut [f64],
+    /// Products of a first row, of a second, ...
+    products: &'a mut [f64],
+    length: usize,
 }
+
+/// Rows (+-i, +-j) that have the same bins, and are summed side by side.
+pub(super) const TOGETHER: usize = 4;
 
 impl<'a> Line<'a> {
     pub(super) fn layout(layout: Layout, length: usize) -> Result<Layout> {
         let layout = layout.and::<u64>(length)?.and::<u32>(length)?.and::<u32>(length + 1)?;
-        let layout = layout.and::<[f64; 4]>(length + 1)?;
-        layout.and::<f64>(length)?.and::<f64>(length)?.and::<f64>(length)?.and::<f64>(length)
+        let layout = layout.and::<[f64; 4]>(TOGETHER * (length + 1))?;
+        layout.and::<f64>(length)?.and::<f64>(length)?.and::<f64>(TOGETHER * length)
     }
 
     pub(super) fn take(arena: &mut Arena<'a>, length: usize) -> Result<Self> {
@@ -59,11 +64,11 @@ impl<'a> Line<'a> {
             keep: arena.take(length)?,
             bin: arena.take(length)?,
             run_bin: arena.take(length + 1)?,
-            runs: arena.take(length + 1)?,
+            runs: arena.take(TOGETHER * (length + 1))?,
             mu_square: arena.take(length)?,
             mu: arena.take(length)?,
-            even: arena.take(length)?,
-            odd: arena.take(length)?,
+            products: arena.take(TOGETHER * length)?,
+            length,
         };
         // Where no angle is needed it is multiplied by 0 and must be a number.
         line.mu_square.fill(0.0);
@@ -71,56 +76,87 @@ impl<'a> Line<'a> {
         Ok(line)
     }
 
-    /// Calls `add(bin, sums)` for each run inside a bin.
+    /// Calls `add(bin, sums)` for each run of row `row` inside a bin.
     #[inline(always)]
-    pub(super) fn for_each_run(&self, runs: usize, mut add: impl FnMut(usize, &[f64; 4])) {
-        for (&bin, sums) in self.run_bin[1..=runs].iter().zip(&self.runs[1..=runs]) {
+    pub(super) fn for_each_run(&self, row: usize, runs: usize, mut add: impl FnMut(usize, &[f64; 4])) {
+        let sums = &self.runs[row * (self.length + 1)..][1..=runs];
+        for (&bin, sums) in self.run_bin[1..=runs].iter().zip(sums) {
             if bin > 0 {
                 add(bin as usize - 1, sums);
             }
         }
     }
 
-    /// Sums `even` times polynomials in mu^2, lane by lane and run by run.
+    /// Where the products of the first `points` points of row `row` go.
     #[inline(always)]
-    pub(super) fn sum_even(&mut self, points: usize, lanes: &[[f64; 4]; 3]) {
-        sum_runs(self.runs, &self.keep[..points], &self.mu_square[..points], &self.even[..points], lanes);
+    pub(super) fn products(&mut self, row: usize, points: usize) -> &mut [f64] {
+        &mut self.products[row * self.length..][..points]
     }
 
-    /// Sums `odd` times mu times polynomials in mu^2.
+    /// Sums the products of `rows` rows times polynomials in mu^2, lane by lane and run by run.
+    #[inline(always)]
+    pub(super) fn sum(&mut self, rows: usize, points: usize, lanes: &[[f64; 4]; 3]) {
+        match rows {
+            1 => self.sum_rows::<1>(points, lanes),
+            2 => self.sum_rows::<2>(points, lanes),
+            _ => self.sum_rows::<TOGETHER>(points, lanes),
+        }
+    }
+
+    /// As [`Line::sum`] for one row, times mu.
     #[inline(always)]
     pub(super) fn sum_odd(&mut self, points: usize, lanes: &[[f64; 4]; 3]) {
-        for (value, mu) in self.odd[..points].iter_mut().zip(&self.mu[..points]) {
+        for (value, mu) in self.products[..points].iter_mut().zip(&self.mu[..points]) {
             *value *= mu;
         }
-        sum_runs(self.runs, &self.keep[..points], &self.mu_square[..points], &self.odd[..points], lanes);
+        self.sum_rows::<1>(points, lanes);
     }
-}
 
-/// Adds up `value (c0 + mu^2 (c2 + mu^2 c4))` in four lanes; a point that is not kept begins the next run.
-#[inline(always)]
-fn sum_runs(
-    runs: &mut [[f64; 4]],
-    keep: &[u64],
-    mu_square: &[f64],
-    value: &[f64],
-    [c0, c2, c4]: &[[f64; 4]; 3],
-) {
-    let mut sum = [0.0_f64; 4];
-    let mut run = 0;
-    for ((&keep, &m), &value) in keep.iter().zip(mu_square).zip(value) {
-        run += usize::from(keep == 0);
-        for lane in 0..4 {
-            let term = value * (c0[lane] + m * (c2[lane] + m * c4[lane]));
-            sum[lane] = f64::from_bits(sum[lane].to_bits() & keep) + term;
+    /// Adds up `product (c0 + mu^2 (c2 + mu^2 c4))` in four lanes; a point that is not kept begins the next run. Several rows
+    /// are several chains of additions that do not wait for one another.
+    #[inline(always)]
+    fn sum_rows<const ROWS: usize>(&mut self, points: usize, [c0, c2, c4]: &[[f64; 4]; 3]) {
+        let mut sum = [[0.0_f64; 4]; ROWS];
+        let mut run = 0;
+        let (length, keep, mu_square) = (self.length, &self.keep[..points], &self.mu_square[..points]);
+        let products: [&[f64]; ROWS] = core::array::from_fn(|row| &self.products[row * length..][..points]);
+        let mut rest = &mut *self.runs;
+        let runs: [&mut [[f64; 4]]; ROWS] = core::array::from_fn(|_| {
+            let (first, others) = core::mem::take(&mut rest).split_at_mut(length + 1);
+            rest = others;
+            first
+        });
+        for m in 0..points {
+            run += usize::from(keep[m] == 0);
+            let mut polynomial = [0.0; 4];
+            for lane in 0..4 {
+                polynomial[lane] = c0[lane] + mu_square[m] * (c2[lane] + mu_square[m] * c4[lane]);
+            }
+            for row in 0..ROWS {
+                let product = products[row][m];
+                for lane in 0..4 {
+                    let kept = f64::from_bits(sum[row][lane].to_bits() & keep[m]);
+                    sum[row][lane] = kept + product * polynomial[lane];
+                }
+                runs[row][run] = sum[row];
+            }
         }
-        runs[run] = sum;
     }
 }
 
 impl Lines<'_> {
     fn multipoles(&self) -> bool {
         self.checked.orders != 1
+    }
+
+    /// Do rows (+-i, +-j) have the same bins?
+    pub(super) fn same_bins(&self) -> bool {
+        matches!(self.checked.second, Second::None) || self.same_angles()
+    }
+
+    /// Do they have the same mu^2?
+    pub(super) fn same_angles(&self) -> bool {
+        self.checked.axis.iter().filter(|&&x| x != 0.0).count() == 1
     }
 
     /// Finds the bins of a row: returns the points that can lie in one (all others come after them) and their runs.
@@ -175,7 +211,7 @@ impl Lines<'_> {
     }
 
     #[inline(always)]
-    fn angles(&self, place: Place, line: &mut Line<'_>, points: usize) {
+    pub(super) fn angles(&self, place: Place, line: &mut Line<'_>, points: usize) {
         let along = self.checked.axis[2];
         let square = place.square as f64;
         for (mu, &z) in line.mu_square[..points].iter_mut().zip(self.z) {
@@ -228,28 +264,47 @@ impl Lines<'_> {
     }
 
     /// Calls `add(bin, [count, sum of the first coordinate, sum of the second])` for each run inside a bin.
+    #[inline(always)]
     pub(super) fn geometry(&self, place: Place, line: &mut Line<'_>, mut add: impl FnMut(usize, [f64; 3])) {
         let (points, runs) = self.bins(place, line);
-        let mut sum = [0.0_f64; 4];
-        let mut run = 0;
-        for m in 0..points {
-            let square = (place.square + self.z_square[m]) as f64;
-            let (first, second) = match self.checked.second {
-                Second::None => (square, 0.0),
-                Second::Cosine(_) => (square, math::sqrt(line.mu_square[m])),
-                Second::Parallel(_) => {
+        let (length, weight) = (line.length, &self.weight[..points]);
+        let (first, second) = line.products.split_at_mut(length);
+        let (first, second) = (&mut first[..points], &mut second[..points]);
+        match self.checked.second {
+            Second::Parallel(_) => {
+                for m in 0..points {
                     let (rest, parallel) = self.split(place, self.z_square[m], self.z[m]);
-                    (rest, parallel.abs())
+                    (first[m], second[m]) = (rest, parallel.abs());
                 }
-            };
-            let weight = self.weight[m];
-            let point = [weight, weight * math::sqrt(first), weight * second, 0.0];
-            run += usize::from(line.keep[m] == 0);
-            for lane in 0..4 {
-                sum[lane] = f64::from_bits(sum[lane].to_bits() & line.keep[m]) + point[lane];
             }
-            line.runs[run] = sum;
+            Second::None | Second::Cosine(_) => {
+                let square = place.square as f64;
+                first.iter_mut().zip(self.z).for_each(|(first, z)| *first = square + z * z);
+                if matches!(self.checked.second, Second::None) {
+                    second.fill(0.0);
+                } else {
+                    second.copy_from_slice(&line.mu_square[..points]);
+                    roots(second);
+                }
+            }
         }
-        line.for_each_run(runs, |bin, sums| add(bin, [sums[0], sums[1], sums[2]]));
+        roots(first);
+        let mut sum = [0.0_f64; 3];
+        let mut run = 0;
+        for (((&keep, &weight), &first), &second) in line.keep.iter().zip(weight).zip(&*first).zip(&*second) {
+            run += usize::from(keep == 0);
+            let point = [weight, weight * first, weight * second];
+            sum = core::array::from_fn(|i| f64::from_bits(sum[i].to_bits() & keep) + point[i]);
+            line.runs[run][..3].copy_from_slice(&sum);
+        }
+        line.for_each_run(0, runs, |bin, sums| add(bin, [sums[0], sums[1], sums[2]]));
     }
+}
+
+/// Square roots, in place.
+#[inline(always)]
+fn roots(values: &mut [f64]) {
+    let (fours, rest) = values.as_chunks_mut::<4>();
+    fours.iter_mut().for_each(math::sqrt_in_place);
+    rest.iter_mut().for_each(|value| *value = math::sqrt(*value));
 }

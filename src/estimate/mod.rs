@@ -6,6 +6,7 @@ pub mod compensation;
 pub mod correlation;
 pub mod edges;
 pub mod exact;
+mod front;
 mod line;
 pub mod power;
 mod sweep;

@@ -126,40 +126,31 @@ impl<T: Real> Source for Modes<'_, T> {
     }
 
     #[inline(always)]
-    fn row(
-        &self,
-        spectrum: usize,
-        index: [usize; 2],
-        offset: usize,
-        even: &mut [f64],
-        odd: &mut [f64],
-        with_odd: bool,
-    ) {
+    fn row(&self, spectrum: usize, index: [usize; 2], offset: usize, odd: bool, products: &mut [f64]) {
         let n = self.brick.n();
         let factor = &self.factor[spectrum * (n / 2 + 1)..][..n / 2 + 1];
         let [x, y] = index.map(|index| factor[Brick::mode(n, index).unsigned_abs() as usize]);
         let across = x * y;
         let length = self.brick.count()[2];
-        let along = &self.along[spectrum * length..][..even.len()];
+        let along = &self.along[spectrum * length..][..products.len()];
         let [f, g] = self.pairs[spectrum].map(|field| self.fields[field]);
         let stride = self.brick.stride()[2];
         if stride == 1 {
-            let range = 2 * offset..2 * (offset + even.len());
+            let range = 2 * offset..2 * (offset + products.len());
             let (f, g) = (f[range.clone()].as_chunks::<2>().0, g[range].as_chunks::<2>().0);
-            for (((even, f), g), along) in even.iter_mut().zip(f).zip(g).zip(along) {
-                *even = real_part(f, g) * (across * along);
-            }
-            if with_odd {
-                for (((odd, f), g), along) in odd.iter_mut().zip(f).zip(g).zip(along) {
-                    *odd = imaginary_part(f, g) * (across * along);
-                }
+            let points = products.iter_mut().zip(f).zip(g).zip(along);
+            if odd {
+                points.for_each(|(((product, f), g), along)| {
+                    *product = imaginary_part(f, g) * (across * along)
+                });
+            } else {
+                points.for_each(|(((product, f), g), along)| *product = real_part(f, g) * (across * along));
             }
         } else {
-            for m in 0..even.len() {
+            for (m, product) in products.iter_mut().enumerate() {
                 let at = 2 * (offset + m * stride);
                 let (f, g) = (&[f[at], f[at + 1]], &[g[at], g[at + 1]]);
-                even[m] = real_part(f, g) * (across * along[m]);
-                odd[m] = imaginary_part(f, g) * (across * along[m]);
+                *product = if odd { imaginary_part(f, g) } else { real_part(f, g) } * (across * along[m]);
             }
         }
     }

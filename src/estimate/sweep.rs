@@ -4,8 +4,11 @@
 //! work is cut into, the threads that run them, and the bricks that a mesh is cut into along x or y change no bit.
 
 use super::binning::{Checked, GEOMETRY, Second, add_geometry, carry_geometry};
-use super::exact::{ExactSum, TERMS};
-use super::line::{Line, Lines, Place};
+use super::exact::ExactSum;
+use super::line::{Line, Lines, Place, TOGETHER};
+use core::ops::Range;
+
+use super::front::{FRONT_TERMS, Front};
 use crate::exec::{Exec, Shared};
 use crate::mesh::{Brick, Space};
 use crate::scratch::{Arena, Layout};
@@ -17,17 +20,9 @@ pub(super) trait Source: Sync {
     /// Products to sum.
     fn spectra(&self) -> usize;
 
-    /// Writes the products of the first points of row (i, j), which begins at element `offset`, times their weight: `even` for even
-    /// multipoles, and `odd` for odd ones if `with_odd`.
-    fn row(
-        &self,
-        spectrum: usize,
-        index: [usize; 2],
-        offset: usize,
-        even: &mut [f64],
-        odd: &mut [f64],
-        with_odd: bool,
-    );
+    /// Writes the products of the first points of row (i, j), which begins at element `offset`, times their weight: those for even multipoles,
+    /// or those for odd ones.
+    fn row(&self, spectrum: usize, index: [usize; 2], offset: usize, odd: bool, products: &mut [f64]);
 }
 
 /// Bytes of partial sums that pieces may take together.
@@ -37,12 +32,27 @@ const PARTIAL: usize = 1 << 26;
 fn pieces(brick: &Brick, checked: &Checked<'_>, spectra: usize) -> Result<usize> {
     let bytes = checked.words(spectra)?.checked_mul(8).ok_or(Error::Overflow)?;
     let most = (PARTIAL / bytes).clamp(2, 64);
-    Ok(if brick.is_empty() { 0 } else { brick.count()[outer_axis(brick)].min(most) })
+    Ok(if brick.is_empty() { 0 } else { leaders(brick, outer_axis(brick)).min(most) })
 }
 
 /// The axis, 0 or 1, whose indices are dealt out to pieces: the outer one in memory.
 fn outer_axis(brick: &Brick) -> usize {
     usize::from(brick.stride()[1] > brick.stride()[0])
+}
+
+/// Indices on an axis whose negative is not in the brick or has a larger index: each stands for both.
+fn leaders(brick: &Brick, axis: usize) -> usize {
+    let (low, high) = leader_ranges(brick, axis);
+    low.len() + high.len()
+}
+
+/// They are two ranges: 0, 1, ..., n/2, and those beyond n - start.
+fn leader_ranges(brick: &Brick, axis: usize) -> (Range<usize>, Range<usize>) {
+    let (n, start) = (brick.n(), brick.start()[axis]);
+    let end = start + brick.count()[axis];
+    let low = start..end.min(n / 2 + 1).max(start);
+    let high = (n - start + 1).max(n / 2 + 1).max(start);
+    (low, high..end.max(high))
 }
 
 /// |n|^2 beyond the mesh's corner need no entry.
@@ -102,9 +112,16 @@ pub(super) fn sweep_scratch(brick: &Brick, checked: &Checked<'_>, spectra: usize
         .and::<f64>(length)?
         .and::<u32>(histogram_length(brick, checked))?
         .and::<[i64; GEOMETRY]>(bins)?
-        .and::<ExactSum>(sums)?;
+        .and::<ExactSum>(sums)?
+        .and::<Front>(bins.checked_mul(fronts(checked, spectra)?).ok_or(Error::Overflow)?)?;
     let line = Line::layout(Layout::EMPTY, length)?.size;
     layout.and::<u8>(line.checked_mul(pieces).ok_or(Error::Overflow)?)
+}
+
+/// Fronts of a bin: one for even multipoles and one for odd ones of each spectrum.
+fn fronts(checked: &Checked<'_>, spectra: usize) -> Result<usize> {
+    checked.sums(spectra)?;
+    Ok(spectra * [0b10101, 0b01010].iter().filter(|&&mask| checked.orders & mask != 0).count())
 }
 
 /// Weights of the points of a row: the planes l = 0 and l = n/2 hold both members of each Hermitian pair, the others one.
@@ -166,6 +183,8 @@ pub(super) fn sweep<S: Source>(
     let geometry = arena.take::<[i64; GEOMETRY]>(pieces * bins)?;
     let sums = arena.take::<ExactSum>(pieces * bins * each)?;
     let line_bytes = Line::layout(Layout::EMPTY, length)?;
+    let front_count = bins * fronts(checked, spectra)?;
+    let fronts_memory = arena.take::<Front>(pieces * front_count)?;
     let lines_memory = arena.take::<u8>(pieces * line_bytes.size)?;
 
     let mut range = 0;
@@ -210,9 +229,14 @@ pub(super) fn sweep<S: Source>(
             // The memory was laid out for it.
             let Ok(mut line) = line_of(piece) else { return };
             let mut add = |place: Place, times: i64| {
-                lines.geometry(place, &mut line, |bin, stretch| {
-                    add_geometry(&mut partial[bin], stretch, times);
-                });
+                simd.vectorise(
+                    #[inline(always)]
+                    || {
+                        lines.geometry(place, &mut line, |bin, stretch| {
+                            add_geometry(&mut partial[bin], stretch, times);
+                        });
+                    },
+                );
             };
             match &histogram {
                 Some(histogram) => {
@@ -223,30 +247,39 @@ pub(super) fn sweep<S: Source>(
                         }
                     }
                 }
-                None => rows.for_each(piece, |place, _, _| add(place, 1)),
+                None => rows.for_each(piece, |group| group.iter().for_each(|row| add(row.place, 1))),
             }
         })?;
     }
     {
-        let shared = Shared::new(sums);
+        let (shared, shared_fronts) = (Shared::new(sums), Shared::new(fronts_memory));
+        let groups = groups(checked);
         exec.parallel_for(pieces, &|piece| {
-            // SAFETY: each piece has `bins * each` sums of its own and runs once.
-            let partial = unsafe { shared.part(piece * bins * each, bins * each) };
-            partial.fill(ExactSum::ZERO);
+            // SAFETY: each piece has so many sums and fronts of its own and runs once.
+            let (sums, fronts) = unsafe {
+                (
+                    shared.part(piece * bins * each, bins * each),
+                    shared_fronts.part(piece * front_count, front_count),
+                )
+            };
+            sums.fill(ExactSum::ZERO);
+            fronts.fill(Front::ZERO);
             let Ok(mut line) = line_of(piece) else { return };
+            let mut partial = Partial { sums, fronts, each, groups: &groups, spectra };
             let mut terms = 0;
-            rows.for_each(piece, |place, index, offset| {
-                terms += length as u64;
-                if terms > TERMS {
-                    partial.iter_mut().for_each(ExactSum::carry);
-                    terms = length as u64;
+            rows.for_each(piece, |group| {
+                // No row adds more than `length` runs to a bin.
+                terms += (TOGETHER * length) as u64;
+                if terms > FRONT_TERMS {
+                    partial.settle();
+                    terms = (TOGETHER * length) as u64;
                 }
                 simd.vectorise(
                     #[inline(always)]
-                    || sum_row(partial, &lines, &mut line, source, place, index, offset),
+                    || sum_rows(&mut partial, &lines, &mut line, source, group),
                 );
             });
-            partial.iter_mut().for_each(ExactSum::carry);
+            partial.settle();
         })?;
     }
 
@@ -266,51 +299,119 @@ pub(super) fn sweep<S: Source>(
     Ok(())
 }
 
-/// Adds one row to the sums of its bins.
+/// Multipoles of one parity: their polynomials, a lane each, and their places among all multipoles.
+struct Group {
+    odd: bool,
+    polynomials: [[f64; 4]; 3],
+    places: [Option<usize>; 4],
+}
+
+/// Even multipoles and odd ones, where there are any.
+fn groups(checked: &Checked<'_>) -> [Option<Group>; 2] {
+    let group = |parity: u32| {
+        let (polynomials, places) = lanes(checked.orders, parity);
+        (places != [None; 4]).then_some(Group { odd: parity == 1, polynomials, places })
+    };
+    [group(0), group(1)]
+}
+
+/// What one piece has summed.
+struct Partial<'a> {
+    sums: &'a mut [ExactSum],
+    fronts: &'a mut [Front],
+    /// Sums of a bin.
+    each: usize,
+    groups: &'a [Option<Group>; 2],
+    spectra: usize,
+}
+
+impl Partial<'_> {
+    /// Adds the runs of one row; `front` counts the fronts of a bin.
+    #[inline(always)]
+    fn add(
+        &mut self,
+        line: &Line<'_>,
+        row: usize,
+        runs: usize,
+        spectrum: usize,
+        front: usize,
+        group: &Group,
+    ) {
+        let fronts = self.fronts.len() / (self.sums.len() / self.each);
+        let multipoles = self.each / self.spectra;
+        line.for_each_run(row, runs, |bin, values| {
+            let front = &mut self.fronts[bin * fronts + front];
+            if !front.add(values) {
+                let sums = &mut self.sums[bin * self.each + spectrum * multipoles..][..multipoles];
+                front.add_slowly(values, sums, &group.places);
+            }
+        });
+    }
+
+    /// Moves everything to the exact sums, in their one form.
+    fn settle(&mut self) {
+        let bins = self.sums.len() / self.each;
+        let fronts = self.fronts.len() / bins;
+        let multipoles = self.each / self.spectra;
+        for (fronts, sums) in self.fronts.chunks_exact_mut(fronts).zip(self.sums.chunks_exact_mut(self.each))
+        {
+            let mut fronts = fronts.iter_mut();
+            for sums in sums.chunks_exact_mut(multipoles) {
+                for (group, front) in self.groups.iter().flatten().zip(&mut fronts) {
+                    front.flush(sums, &group.places);
+                }
+            }
+        }
+        self.sums.iter_mut().for_each(ExactSum::carry);
+    }
+}
+
+/// Adds rows (+-i, +-j) to the sums of their bins.
 #[inline(always)]
-fn sum_row<S: Source>(
-    sums: &mut [ExactSum],
+fn sum_rows<S: Source>(
+    partial: &mut Partial<'_>,
     lines: &Lines<'_>,
     line: &mut Line<'_>,
     source: &S,
-    place: Place,
-    index: [usize; 2],
-    offset: usize,
+    rows: &[Row],
 ) {
-    let (points, runs) = lines.bins(place, line);
-    if points == 0 {
-        return;
-    }
-    let orders = lines.checked.orders;
-    let multipoles = orders.count_ones() as usize;
-    let each = source.spectra() * multipoles;
-    for spectrum in 0..source.spectra() {
-        source.row(
-            spectrum,
-            index,
-            offset,
-            &mut line.even[..points],
-            &mut line.odd[..points],
-            orders & 0b1010 != 0,
-        );
-        for parity in [0, 1] {
-            let (coefficients, places) = lanes(orders, parity);
-            if places == [None; 4] {
-                continue;
-            }
-            if parity == 0 {
-                line.sum_even(points, &coefficients);
-            } else {
-                line.sum_odd(points, &coefficients);
-            }
-            line.for_each_run(runs, |bin, values| {
-                let sums = &mut sums[bin * each + spectrum * multipoles..][..multipoles];
-                for (lane, place) in places.iter().enumerate() {
-                    if let Some(place) = *place {
-                        sums[place].add(values[lane]);
+    let (together, same_angles) = (lines.same_bins(), lines.same_angles() || lines.checked.orders == 1);
+    let groups = partial.groups;
+    let parities = groups.iter().flatten().count();
+    let (mut points, mut runs) = (0, 0);
+    // Rows summed side by side: all of them (1, 2 or 4) where they have the same angles, else one after another.
+    let step = if together && same_angles { rows.len() } else { 1 };
+    for (part, rows) in rows.chunks(step).enumerate() {
+        if part == 0 || !together {
+            (points, runs) = lines.bins(rows[0].place, line);
+        } else if !same_angles {
+            lines.angles(rows[0].place, line, points);
+        }
+        if points == 0 {
+            continue;
+        }
+        for spectrum in 0..partial.spectra {
+            for (parity, group) in groups.iter().flatten().enumerate() {
+                let front = spectrum * parities + parity;
+                if group.odd {
+                    for row in rows {
+                        if rows.len() > 1 {
+                            lines.angles(row.place, line, points);
+                        }
+                        source.row(spectrum, row.index, row.offset, true, line.products(0, points));
+                        line.sum_odd(points, &group.polynomials);
+                        partial.add(line, 0, runs, spectrum, front, group);
+                    }
+                } else {
+                    for (r, row) in rows.iter().enumerate() {
+                        source.row(spectrum, row.index, row.offset, false, line.products(r, points));
+                    }
+                    line.sum(rows.len(), points, &group.polynomials);
+                    for r in 0..rows.len() {
+                        partial.add(line, r, runs, spectrum, front, group);
                     }
                 }
-            });
+            }
         }
     }
 }
@@ -319,7 +420,7 @@ fn sum_row<S: Source>(
 fn count_rows<'h>(histogram: &'h mut [u32], rows: &Rows<'_>) -> &'h [u32] {
     histogram.fill(0);
     for piece in 0..rows.pieces {
-        rows.for_each(piece, |place, _, _| histogram[place.square as usize] += 1);
+        rows.for_each(piece, |group| histogram[group[0].place.square as usize] += group.len() as u32);
     }
     histogram
 }
@@ -331,27 +432,63 @@ struct Rows<'a> {
     pieces: usize,
 }
 
+/// A row: i and j, where it lies in space and in memory.
+#[derive(Clone, Copy)]
+struct Row {
+    place: Place,
+    index: [usize; 2],
+    offset: usize,
+}
+
 impl Rows<'_> {
-    /// Calls `visit(place, [i, j], offset)`.
+    /// Calls `visit` for each set of rows (+-i, +-j) in the brick: 1, 2 or 4 of them.
     #[inline(always)]
-    fn for_each(&self, piece: usize, mut visit: impl FnMut(Place, [usize; 2], usize)) {
-        let (n, start, count, stride) =
-            (self.brick.n(), self.brick.start(), self.brick.count(), self.brick.stride());
+    fn for_each(&self, piece: usize, mut visit: impl FnMut(&[Row])) {
+        let (n, start, stride) = (self.brick.n(), self.brick.start(), self.brick.stride());
         let outer = outer_axis(self.brick);
         let inner = 1 - outer;
+        let row = |o: usize, i: usize| {
+            let mut index = [0; 2];
+            (index[outer], index[inner]) = (o, i);
+            let [x, y] = index.map(|index| Brick::mode(n, index));
+            let place = Place {
+                square: (x * x + y * y) as u64,
+                across: self.axis[0] * x as f64 + self.axis[1] * y as f64,
+            };
+            Row {
+                place,
+                index,
+                offset: (o - start[outer]) * stride[outer] + (i - start[inner]) * stride[inner],
+            }
+        };
+        let (low, high) = leader_ranges(self.brick, outer);
+        let leaders = low.len() + high.len();
         // The product fits: there are at most 64 pieces.
-        for o in piece * count[outer] / self.pieces..(piece + 1) * count[outer] / self.pieces {
-            for i in 0..count[inner] {
-                let mut index = [0; 2];
-                index[outer] = start[outer] + o;
-                index[inner] = start[inner] + i;
-                let [x, y] = index.map(|index| Brick::mode(n, index));
-                let place = Place {
-                    square: (x * x + y * y) as u64,
-                    across: self.axis[0] * x as f64 + self.axis[1] * y as f64,
-                };
-                visit(place, index, o * stride[outer] + i * stride[inner]);
+        for o in piece * leaders / self.pieces..(piece + 1) * leaders / self.pieces {
+            let o = if o < low.len() { low.start + o } else { high.start + (o - low.len()) };
+            let (inner_low, inner_high) = leader_ranges(self.brick, inner);
+            for i in inner_low.chain(inner_high) {
+                let (os, is) = (self.signs(outer, o), self.signs(inner, i));
+                let mut group = [row(o, i); TOGETHER];
+                let mut count = 0;
+                for &o in os.iter().flatten() {
+                    for &i in is.iter().flatten() {
+                        group[count] = row(o, i);
+                        count += 1;
+                    }
+                }
+                visit(&group[..count]);
             }
         }
+    }
+
+    /// An index, and that of the negative mode number where the brick has it too.
+    #[inline(always)]
+    fn signs(&self, axis: usize, index: usize) -> [Option<usize>; 2] {
+        let (n, start) = (self.brick.n(), self.brick.start()[axis]);
+        let other = n - index;
+        let apart = index > 0 && other != index;
+        let inside = (start..start + self.brick.count()[axis]).contains(&other);
+        [Some(index), (apart && inside).then_some(other)]
     }
 }

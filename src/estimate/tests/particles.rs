@@ -8,13 +8,6 @@ use crate::estimate::power::{shot_noise, subtract_shot_noise};
 use crate::pm::Window;
 use crate::status::Error;
 
-const WINDOWS: [Window; 4] = [
-    Window::NearestGridPoint,
-    Window::CloudInCell,
-    Window::TriangularShapedCloud,
-    Window::PiecewiseCubicSpline,
-];
-
 /// The B-spline of the window at a distance of x cells.
 fn spline(window: Window, x: f64) -> f64 {
     let x = x.abs();
@@ -70,7 +63,7 @@ fn ratio(modes: &[f64], n: usize, count: usize, compensation: Compensation, edge
 fn poisson_noise_is_flat_to_the_nyquist_frequency_with_c1() {
     let (n, count) = (48, 60_000);
     let particles = poisson(n, count, 5);
-    for window in WINDOWS {
+    for window in Window::ALL {
         let modes = deposit(n, &particles, 0.0, window);
         for edges in [[1, 64], [64, 256], [256, 441], [441, 576]] {
             let (ratio, error) = ratio(&modes, n, count, Compensation::Aliased(window), edges);
