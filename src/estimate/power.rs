@@ -24,7 +24,7 @@ use crate::simd::Simd;
 use crate::status::{Error, Result};
 
 /// Scratch of [`power_sums`] for `pairs` pairs of fields. At most 64 sets of partial sums, or 64 MiB of them (two sets if one is more), 4 bytes for
-/// each |n|^2 up to the last edge, 4 for each square of (i, j), and a few rows for each pair and set.
+/// each |n|^2 up to the last edge, 4 for each square of (i, j), and some twenty rows of f64 for each set.
 ///
 /// # Errors
 /// `Brick` for a brick of configuration space; else as [`Binning::words`].
@@ -141,7 +141,7 @@ impl<T: Real> Source for Modes<'_, T> {
             let points = products.iter_mut().zip(f).zip(g).zip(along);
             if odd {
                 points.for_each(|(((product, f), g), along)| {
-                    *product = imaginary_part(f, g) * (across * along)
+                    *product = imaginary_part(f, g) * (across * along);
                 });
             } else {
                 points.for_each(|(((product, f), g), along)| *product = real_part(f, g) * (across * along));
