@@ -46,14 +46,19 @@ fn no_parameter_reaches_a_panic() {
 #[test]
 fn the_c_of_the_readme_compiles() {
     let readme = std::fs::read_to_string(root().join("README.md")).expect("README.md");
-    let code = readme.split("```c\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a block of C");
-    let source = format!(
-        "#include <stdio.h>\n#include <stdlib.h>\n#include <fixpair.h>\n\
-         void host(void *my_particles, size_t n, uint64_t seed, const double *k, const double *power, size_t rows, \
-         fixpair_fft_f32 fft);\n\
-         void host(void *my_particles, size_t n, uint64_t seed, const double *k, const double *power, size_t rows, \
-         fixpair_fft_f32 fft)\n{{\n{code}}}\n"
-    );
+    let blocks: Vec<_> = readme.split("```c\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    // What the reader of each block has at hand.
+    let hosts = [
+        "void *my_particles, size_t n, uint64_t seed, const double *k, const double *power, size_t rows, fixpair_fft_f32 fft",
+        "struct particle *p, size_t count, double L, fixpair_fft_f32 fft, float *mesh, void *scratch, size_t bytes, \
+         int64_t *sums, size_t words, fixpair_bin *bins, double *P",
+    ];
+    assert_eq!(blocks.len(), hosts.len(), "every block of C has its host");
+    let mut source = String::from("#include <stdio.h>\n#include <stdlib.h>\n#include <fixpair.h>\n");
+    source.push_str("struct particle { float pos[3], vel[3]; uint32_t id; };\n");
+    for (i, (code, host)) in blocks.iter().zip(hosts).enumerate() {
+        source.push_str(&format!("void host{i}({host});\nvoid host{i}({host})\n{{\n{code}}}\n"));
+    }
     let file = folder().join("readme.c");
     std::fs::write(&file, source).expect("the target folder can be written");
     let mut compile = tool("CC", "cc");
