@@ -3,9 +3,9 @@
  *
  *     03_spectra [options] FILE...            03_spectra --help
  *
- * Prints P_0, P_2, P_4 in shells of one 2 pi/L, and B(Delta k, k, k) with counts of triangles, shot noise and the reduced Q, as tables with commented
- * columns; common/spectra does the measuring. With --claims the files of 01 are compared with linear theory, one another, and the template of
- * local non-Gaussianity. Exits with 0 only if all of it holds.
+ * Prints P_0, P_2, P_4 in shells of one 2 pi/L, and B(Delta k, k, k) with counts of triangles, shot noise and the reduced Q, as
+ * tables with commented columns; common/spectra does the measuring. With --claims the files of 01 are compared with linear
+ * theory, one another, and the template of local non-Gaussianity. Exits with 0 only if all of it holds.
  */
 
 /* mkdir */
@@ -94,7 +94,10 @@ static int set(struct options *options, const char *name, const char *text) {
         wrong = number(&value, text, 8.0, 65536.0);
         options->mesh = (size_t)value;
         wrong = wrong || (double)options->mesh != value || fixpair_fft_next_side(options->mesh) != options->mesh;
-        if (wrong) fprintf(stderr, "sides are even, with factors 2, 3, 5, 7; the next is %lu\n", (unsigned long)fixpair_fft_next_side(options->mesh));
+        if (wrong) {
+            fprintf(stderr, "sides are even, with factors 2, 3, 5, 7; the next is %lu\n",
+                    (unsigned long)fixpair_fft_next_side(options->mesh));
+        }
     } else if (strcmp(name, "--window") == 0) {
         wrong = choose(&choice, text, windows, 4);
         options->window = choice + FIXPAIR_WINDOW_NGP;
@@ -276,7 +279,8 @@ static void print_bispectrum(FILE *stream, const struct survey *survey, const st
     const struct spectra_shells *shells = &survey->spectra.wide;
     double k_f = 2.0 * PI / survey->box_size;
     fprintf(stream, "# shot noise is in P and B only where points sample the field at random; it is subtracted %s\n"
-                    "# 1, 2: Delta k, k [h/Mpc]  3: triangles  4: P(k) [(Mpc/h)^3]  5: B(Delta k, k, k) [(Mpc/h)^6]  6: its shot noise  7: Q\n",
+                    "# 1, 2: Delta k, k [h/Mpc]  3: triangles  4: P(k) [(Mpc/h)^3]  5, 6: B(Delta k, k, k), its shot noise [(Mpc/h)^6]  "
+                    "7: Q\n",
             survey->options.subtract_noise ? "in Q" : "nowhere");
     for (size_t s = 0; s < shells->count; s++) {
         fprintf(stream, "%9.6f %9.6f %12llu %14.7g %14.7g %12.5g %12.5g\n", k_f * shells->bins[0].first, k_f * shells->bins[s].first,
@@ -313,8 +317,10 @@ static int run(struct survey *survey) {
         fprintf(stderr, "%s: %s\n", options->tables, strerror(errno));
         return 1;
     }
-    TRY(fixpair_threads_create(&survey->threads, &survey->exec, options->threads));
     if ((survey->results = calloc(options->files_len, sizeof *survey->results)) == NULL) return 1;
+    struct claims claims = {&survey->spectra, survey->results, options->files, options->files_len, 0.0, options->rsd, options->claims};
+    if (options->claims != NULL) TRY(claims_ready(&claims));
+    TRY(fixpair_threads_create(&survey->threads, &survey->exec, options->threads));
     for (size_t i = 0; i < options->files_len; i++) {
         TRY(measure_file(survey, i));
         TRY(write_table(survey, i, "power", print_power));
@@ -322,8 +328,7 @@ static int run(struct survey *survey) {
     }
     TRY(check_counts(survey));
     if (options->claims == NULL) return 0;
-    struct claims claims = {&survey->spectra, survey->results, options->files, options->files_len, survey->header.redshift,
-                            options->rsd, options->claims};
+    claims.redshift = survey->header.redshift;
     return claims_check(&claims, &survey->failures);
 }
 

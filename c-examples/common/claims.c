@@ -70,7 +70,8 @@ static int fill_tables(struct theory *theory, const struct claims *claims) {
 
 /*
  * B = 2 f_NL alpha_1 alpha_2 alpha_3 (P_1 P_2 + P_2 P_3 + P_3 P_1), P of Phi, averaged over triangles. It is steep in the small
- * wavenumber alone, and the larger that is the fewer triangles it closes with two modes of one shell: so these are counted for each |n|^2 of it apart.
+ * wavenumber alone, and the larger that is the fewer triangles it closes with two modes of one shell: so these are counted for
+ * each |n|^2 of it apart.
  */
 static void fill_template(struct theory *theory, const struct spectra *spectra, const uint64_t *parts, const uint64_t *edges, size_t sides,
                          int *failures) {
@@ -147,11 +148,14 @@ static void theory_close(struct theory *theory) {
     free(theory->alpha);
 }
 
-/* How many narrow shells lie below LINEAR_K. */
+/*
+ * How many narrow shells lie below LINEAR_K, and where the mesh is fine enough to see it: within k < 2 pi/(8 H) images are below
+ * 0.1%.
+ */
 static size_t linear_shells(const struct spectra *spectra) {
+    double highest = fmin(LINEAR_K / TWO_PI * spectra->choice.box_size, (double)spectra->choice.n / 8.0);
     size_t count = 0;
-    double k_f = TWO_PI / spectra->choice.box_size;
-    while (count < spectra->narrow.count && spectra->narrow.bins[count].first * k_f < LINEAR_K) count++;
+    while (count < spectra->narrow.count && spectra->narrow.bins[count].first < highest) count++;
     return count;
 }
 
@@ -241,6 +245,16 @@ static int check_bispectrum(const struct claims *claims, const struct theory *th
     *failures += claim(fabs(matched / F_NL - 1.0) < 0.1, "it fits the template with f_NL = %.1f, to 10%%; B of one universe alone says %.0f +- %.0f",
                        matched, alone, sigma);
     return 0;
+}
+
+int claims_ready(const struct claims *claims) {
+    static const char *const names[] = {"fixed_original_fnl0", "fixed_inverted_fnl0", "normal_original_fnl0", "fixed_original_fnl100",
+                                        "fixed_inverted_fnl100"};
+    struct boltzmann_table table;
+    int missing = boltzmann_read(&table, claims->table);
+    boltzmann_close(&table);
+    for (size_t i = 0; i < (claims->redshift_space ? 2 : 5); i++) missing += find(claims, names[i]) == NULL;
+    return missing != 0;
 }
 
 int claims_check(const struct claims *claims, int *failures) {

@@ -47,8 +47,8 @@ int linear_density(struct linear *linear, const struct fixpair_conditions *condi
 int linear_measure(struct linear *linear, double box_size, const double *modes, double *k, double *power);
 
 /*
- * The mean of a function of |n|^2 over the modes of each shell edges[s] <= |n|^2 < edges[s + 1], which are counted here without the library.
- * values[square] for all squares below the last edge; edges_len - 1 averages.
+ * The mean of a function of |n|^2 over the modes of each shell edges[s] <= |n|^2 < edges[s + 1], which are counted here without
+ * the library. values[square] for all squares below the last edge; edges_len - 1 averages.
  */
 int linear_average(double *average, const double *values, const uint64_t *edges, size_t edges_len);
 

@@ -1,9 +1,10 @@
 /*
- * From particles to P_l(k) and the squeezed bispectrum B(Delta k, k, k): deposit, transform, sums over modes and over triangles, with
- * memory that is taken once for any number of catalogues in one box.
+ * From particles to P_l(k) and the squeezed bispectrum B(Delta k, k, k): deposit, transform, sums over modes and over triangles,
+ * with memory that is taken once for any number of catalogues in one box.
  *
- * P_l: l = 0, 2, 4 about z in shells b <= |n| < b + 1, n = k L/(2 pi), b = 1, 2, ... B: shells of w about w, 2w, ...; a mode belongs
- * to the nearest; triangles have one side in the first shell and two in shell j = 1, 2, ... Nothing is subtracted: shot noise is returned beside.
+ * P_l: l = 0, 2, 4 about z in shells b <= |n| < b + 1, n = k L/(2 pi), b = 1, 2, ... B: shells of w about w, 2w, ...; a mode
+ * belongs to the nearest; triangles have one side in the first shell and two in shell j = 1, 2, ... Nothing is subtracted: shot
+ * noise is returned beside.
  *
  * In double precision. At high redshift the signal is a small part of what a mesh holds: the lattice that particles started from.
  */
@@ -73,8 +74,8 @@ struct spectra_result {
 };
 
 /*
- * Takes all memory: four meshes and little else. `exec` is not NULL; *spectra must not move. Returns 0, or 1 after saying what is wrong; in both cases
- * spectra_close gives the memory back, as it does for a struct of zeros.
+ * Takes all memory: four meshes and little else. `exec` is not NULL; *spectra must not move. Returns 0, or 1 after saying what is
+ * wrong; in both cases spectra_close gives the memory back, as it does for a struct of zeros.
  */
 int spectra_open(struct spectra *spectra, const struct spectra_choice *choice, const struct fixpair_exec *exec);
 
@@ -84,13 +85,17 @@ void spectra_close(struct spectra *spectra);
 int spectra_count(struct spectra *spectra);
 
 /*
- * Counts kept in a file: numbers of 64 bits in the machine's byte order, what they belong to before them. Loading returns 0, or 1 where there is no
- * such file or it belongs to another mesh, other shells or triangles; counts are then untouched. Saving returns 0, or 1 after saying what is wrong.
+ * Counts kept in a file: numbers of 64 bits in the machine's byte order, what they belong to before them. Loading returns 0, or 1
+ * where there is no such file or it belongs to another mesh, other shells or triangles; counts are then untouched. Saving returns
+ * 0, or 1 after saying what is wrong.
  */
 int spectra_save_counts(const struct spectra *spectra, const char *path);
 int spectra_load_counts(struct spectra *spectra, const char *path);
 
-/* Measures particles, whose positions are in Mpc/h. Returns 0, or 1 after saying what is wrong; spectra_release gives the result back. */
+/*
+ * Measures particles, whose positions are in Mpc/h. Returns 0, or 1 after saying what is wrong; spectra_release gives the result
+ * back.
+ */
 int spectra_measure(struct spectra *spectra, struct spectra_result *result, const struct fixpair_positions_f64 *position);
 
 void spectra_release(struct spectra_result *result);
