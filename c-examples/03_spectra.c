@@ -270,8 +270,8 @@ static void print_power(FILE *stream, const struct survey *survey, const struct 
                     "# 1: k [h/Mpc]  2: modes  3, 4, 5: P_0, P_2, P_4 [(Mpc/h)^3]  6: shot noise V/N [(Mpc/h)^3]\n");
     for (size_t s = 0; s < shells->count; s++) {
         const double *p = result->power + 3 * s;
-        fprintf(stream, "%9.6f %9llu %14.7g %14.7g %14.7g %12.5g\n", k_f * shells->bins[s].first, (unsigned long long)shells->bins[s].count,
-                p[0], p[1], p[2], result->noise);
+        fprintf(stream, "%9.6f %9llu %14.7g %14.7g %14.7g %12.5g\n", k_f * shells->bins[s].first,
+                (unsigned long long)shells->bins[s].count, p[0], p[1], p[2], result->noise);
     }
 }
 

@@ -100,8 +100,8 @@ int spectra_open(struct spectra *spectra, const struct spectra_choice *choice, c
     memset(spectra, 0, sizeof *spectra);
     spectra->choice = *choice;
     spectra->exec = exec;
-    /* Shells end below the Nyquist frequency. Those of triangles stay free of aliasing if n is at least the sum of the upper edges, 1.5 w and
-       2 (count + 1/2) w. */
+    /* Shells end below the Nyquist frequency. Triangles are free of aliasing if n is at least the sum of their upper edges, 1.5 w and
+       twice (count + 1/2) w. */
     double narrow = floor(fmin(highest, n / 2.0) + 1e-9) - 1.0;
     double wide = floor(fmin(fmin(highest, n / 2.0) / width - 0.5, (n / width - 2.5) / 2.0) + 1e-9);
     if (!(narrow >= 1.0 && wide >= 1.0)) {
