@@ -182,7 +182,7 @@ static int check_power(const struct claims *claims, const struct theory *theory,
                        chi_square, (unsigned long)shells);
     *failures += claim(worst < 0.005, "k < %.3f: P_0 of the fixed particles is that of linear theory, to %.2f%% in each shell", highest,
                        100.0 * worst);
-    /* What is left of the pair is second order squared, and the modes' number is no help to the members. Of 7 seeds: 5 to 10 times. */
+    /* What is left of the mean is even: the square of second order. Of 7 seeds: 5 to 10 times. */
     *failures += claim(9.0 * pair < single,
                        "the pair's mean is nearer to it than its members, in the r.m.s. %.1f times: what is odd cancels", sqrt(single / pair));
     return 0;
