@@ -131,6 +131,7 @@ static int read_records(struct gadget_file *file, const char *path, FILE *stream
     for (int type = 0; type < 6; type++) {
         if (type != HALO && file->header.npart[type] != 0) return complain(path, "particles of a type other than 1");
     }
+    if (file->header.num_files > 1) return complain(path, "one of several files of a snapshot; join them first");
     file->count = file->header.npart[HALO];
     if (file->count == 0) return complain(path, "no particles of type 1");
     if (file->count > INT32_MAX / (3 * sizeof(float))) return complain(path, "a record of 2 GiB or more");
@@ -154,6 +155,15 @@ int gadget_read(struct gadget_file *file, const char *path) {
     int outcome = read_records(file, path, stream);
     fclose(stream);
     return outcome;
+}
+
+double gadget_unit(const struct gadget_header *header) {
+    double mass = header->mass[HALO] * (double)header->npart[HALO];
+    double box_size = cbrt(mass / (CRITICAL_DENSITY * header->omega_0)), units[] = {GADGET_KPC, GADGET_MPC};
+    for (int i = 0; i < 2; i++) {
+        if (fabs(header->box_size / (box_size * units[i]) - 1.0) < 0.03) return units[i];
+    }
+    return 0.0;
 }
 
 void gadget_close(struct gadget_file *file) {

@@ -81,6 +81,12 @@ int gadget_write(const char *path, const struct gadget_universe *universe, const
  */
 int gadget_read(struct gadget_file *file, const char *path);
 
+/*
+ * GADGET_KPC or GADGET_MPC, whichever makes the masses of the particles, in 1e10 Msun/h, fill the box to its omega_0 within 10%;
+ * 0 if neither does.
+ */
+double gadget_unit(const struct gadget_header *header);
+
 void gadget_close(struct gadget_file *file);
 
 #endif

@@ -22,9 +22,16 @@ int linear_open(struct linear *linear, const struct fixpair_fft_f64 *fft, const 
     if (linear->edges == NULL) return 1;
     for (uint64_t b = 0; b <= linear->shells; b++) linear->edges[b] = (b + 1) * (b + 1);
 
+    size_t bins, values;
+    TRY(fixpair_binning_init(&linear->binning, linear->edges, linear->shells + 1));
+    TRY(fixpair_binning_lengths(&bins, &values, &linear->words, &linear->binning, 1));
+    linear->bins = malloc(bins * sizeof *linear->bins);
+    linear->sums = malloc(linear->words * sizeof *linear->sums);
+    if (linear->bins == NULL || linear->sums == NULL) return 1;
+
     TRY(fixpair_mode_table_length(&linear->length, linear->n));
     TRY(fixpair_add_local_scratch_f64(&local, fine));
-    TRY(fixpair_power_sums_scratch(&sums, &fft->fourier, linear->edges, linear->shells + 1));
+    TRY(fixpair_power_sums_scratch(&sums, &fft->fourier, &linear->binning, 1));
     larger.size = local.size > sums.size ? local.size : sums.size;
     larger.align = local.align > sums.align ? local.align : sums.align;
     linear->scratch_len = larger.size;
@@ -36,6 +43,8 @@ int linear_open(struct linear *linear, const struct fixpair_fft_f64 *fft, const 
 
 void linear_close(struct linear *linear) {
     free(linear->edges);
+    free(linear->bins);
+    free(linear->sums);
     free(linear->scratch);
     free(linear->factor);
     free(linear->work);
@@ -57,57 +66,58 @@ int linear_density(struct linear *linear, const struct fixpair_conditions *condi
 }
 
 int linear_measure(struct linear *linear, double box_size, const double *modes, double *k, double *power) {
-    struct fixpair_bin *bins = malloc(linear->shells * sizeof *bins);
-    if (bins == NULL) return 1;
-    fixpair_status_t status =
-        fixpair_power_sums_f64(bins, linear->shells, linear->edges, linear->shells + 1, modes, NULL, linear->fft->length,
-                               &linear->fft->fourier, linear->scratch, linear->scratch_len, linear->exec);
-    for (size_t b = 0; status == FIXPAIR_OK && b < linear->shells; b++) {
-        k[b] = TWO_PI / box_size * bins[b].wavenumber / (double)bins[b].modes;
-        power[b] = pow(box_size, 3.0) * bins[b].power / (double)bins[b].modes;
-    }
-    free(bins);
-    TRY(status);
+    static const size_t pair[1][2] = {{0, 0}};
+    /* The mean alone: as many values as bins. */
+    size_t shells = linear->shells;
+    memset(linear->sums, 0, linear->words * sizeof *linear->sums);
+    TRY(fixpair_power_sums_f64(linear->sums, linear->words, &modes, 1, linear->fft->length, pair, 1, NULL, &linear->fft->fourier,
+                               &linear->binning, linear->scratch, linear->scratch_len, linear->exec));
+    TRY(fixpair_binning_read(linear->bins, shells, power, shells, linear->sums, linear->words, &linear->binning, 1));
+    TRY(fixpair_binning_normalise(power, shells, linear->bins, shells, linear->binning.orders, pow(box_size, 3.0)));
+    for (size_t b = 0; b < shells; b++) k[b] = TWO_PI / box_size * linear->bins[b].first;
     return 0;
 }
 
-/* How many modes there are of each |n|^2 below (n/2)^2. */
-static void count_modes(double *count, long half) {
-    for (long i = 1 - half; i < half; i++) {
-        for (long j = 1 - half; j < half; j++) {
-            for (long l = 1 - half; l < half; l++) {
+/* How many modes there are of each |n|^2 < end. */
+static void count_modes(double *count, long end) {
+    long most = (long)sqrt((double)end) + 1;
+    for (long i = -most; i <= most; i++) {
+        for (long j = -most; j <= most; j++) {
+            for (long l = -most; l <= most; l++) {
                 long square = i * i + j * j + l * l;
-                if (square < half * half) count[square] += 1.0;
+                if (square < end) count[square] += 1.0;
             }
         }
     }
 }
 
-/* The three arrays have an element for each |n|^2 below (n/2)^2. */
-static int average_theory(struct linear *linear, const struct fixpair_conditions *conditions, double *average, double *k,
-                          double *power, double *count) {
-    size_t half = linear->n / 2;
-    for (size_t square = 1; square < half * half; square++) k[square] = TWO_PI / conditions->box_size * sqrt((double)square);
-    TRY(fixpair_linear_power(power + 1, k + 1, half * half - 1, &conditions->cosmology, &conditions->linear,
-                             conditions->redshift));
-    count_modes(count, (long)half);
-    for (size_t b = 0; b < linear->shells; b++) {
+int linear_average(double *average, const double *values, const uint64_t *edges, size_t edges_len) {
+    double *count = memory_take_doubles((size_t)edges[edges_len - 1]);
+    if (count == NULL) return 1;
+    count_modes(count, (long)edges[edges_len - 1]);
+    for (size_t s = 0; s + 1 < edges_len; s++) {
         double modes = 0.0, sum = 0.0;
-        for (size_t square = linear->edges[b]; square < linear->edges[b + 1]; square++) {
+        for (size_t square = (size_t)edges[s]; square < edges[s + 1]; square++) {
             modes += count[square];
-            sum += count[square] * power[square];
+            sum += count[square] * values[square];
         }
-        average[b] = sum / modes;
+        average[s] = sum / modes;
     }
+    free(count);
     return 0;
 }
 
 int linear_theory(struct linear *linear, const struct fixpair_conditions *conditions, double *power) {
     size_t squares = linear->n / 2 * (linear->n / 2);
-    double *k = memory_take_doubles(squares), *each = memory_take_doubles(squares), *count = memory_take_doubles(squares);
-    int outcome = k == NULL || each == NULL || count == NULL || average_theory(linear, conditions, power, k, each, count) != 0;
+    double *k = memory_take_doubles(squares), *each = memory_take_doubles(squares);
+    int32_t outcome = 1;
+    if (k != NULL && each != NULL) {
+        for (size_t square = 1; square < squares; square++) k[square] = TWO_PI / conditions->box_size * sqrt((double)square);
+        outcome = fixpair_linear_power(each + 1, k + 1, squares - 1, &conditions->cosmology, &conditions->linear, conditions->redshift);
+        if (outcome == 0) outcome = linear_average(power, each, linear->edges, linear->shells + 1);
+    }
     free(k);
     free(each);
-    free(count);
-    return outcome;
+    TRY(outcome);
+    return 0;
 }

@@ -20,6 +20,10 @@ struct linear {
     size_t n;
     size_t shells;
     uint64_t *edges;  /* shells + 1 values of |n|^2 */
+    struct fixpair_binning binning;
+    struct fixpair_bin *bins;
+    int64_t *sums;
+    size_t words;     /* of `sums` */
     size_t length;    /* of the tables by |n|^2 */
     double *factor;   /* a table by |n|^2 */
     double *work;     /* a mesh of `fine` */
@@ -42,7 +46,13 @@ int linear_density(struct linear *linear, const struct fixpair_conditions *condi
 /* Mean k and P of `modes` in each shell. */
 int linear_measure(struct linear *linear, double box_size, const double *modes, double *k, double *power);
 
-/* P of linear theory averaged over the modes of each shell, which are counted here without the library. */
+/*
+ * The mean of a function of |n|^2 over the modes of each shell edges[s] <= |n|^2 < edges[s + 1], which are counted here without
+ * the library. values[square] for all squares below the last edge; edges_len - 1 averages.
+ */
+int linear_average(double *average, const double *values, const uint64_t *edges, size_t edges_len);
+
+/* P of linear theory averaged so over the shells of `linear`. */
 int linear_theory(struct linear *linear, const struct fixpair_conditions *conditions, double *power);
 
 #endif
