@@ -13,7 +13,13 @@
 
 use core::f64::consts::PI;
 
+use crate::exec::Exec;
+use crate::mesh::{Brick, Space};
 use crate::pm::Window;
+use crate::real::Real;
+use crate::scratch::{Arena, Layout};
+use crate::status::{Error, Result};
+use crate::walk::walk;
 
 /// What the modes of a field are multiplied by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,9 +60,56 @@ impl Compensation {
     }
 }
 
+/// Scratch of [`compensate`]: N/2 + 1 numbers.
+///
+/// # Errors
+/// `Brick` for a brick of configuration space, `Overflow`.
+pub fn compensate_scratch(brick: &Brick) -> Result<Layout> {
+    brick.check_space(Space::Fourier)?;
+    Layout::EMPTY.and::<f64>(brick.n() / 2 + 1)
+}
+
+/// f_k <- scale a(|n_x|) a(|n_y|) a(|n_z|) f_k, in place, a the factor of the compensation: what kernels that do not compensate by
+/// themselves, as those of the bispectrum, want their modes to be. With scale = 1/(sum of weights) a deposit becomes its density contrast.
+///
+/// # Errors
+/// `Brick` for a brick of configuration space, `Length`, `Scratch`, `Alignment`, `Hook`, `NotFinite` for a scale that is not. Modes are not checked.
+///
+/// Cost: one pass over the modes.
+pub fn compensate<T: Real>(
+    modes: &mut [T],
+    compensation: Compensation,
+    scale: f64,
+    brick: &Brick,
+    scratch: &mut [u8],
+    exec: &dyn Exec,
+) -> Result<()> {
+    let layout = compensate_scratch(brick)?;
+    if !scale.is_finite() {
+        return Err(Error::NotFinite);
+    }
+    let n = brick.n();
+    let factor = Arena::new(scratch, layout)?.take::<f64>(n / 2 + 1)?;
+    for (m, factor) in factor.iter_mut().enumerate() {
+        *factor = compensation.factor(m, n);
+    }
+    let factor = &*factor;
+    walk::<T, 1, 0>(exec, brick, [modes], [], &|run, [row], []| {
+        let [x, y] = [run.index[0], run.index[1]].map(|i| Brick::mode(n, i).unsigned_abs() as usize);
+        let across = scale * (factor[x] * factor[y]);
+        for (mode, along) in row.as_chunks_mut::<2>().0.iter_mut().zip(&factor[run.index[2]..]) {
+            *mode = mode.map(|part| T::from_f64(part.to_f64() * (across * along)));
+        }
+    })
+}
+
 #[cfg(test)]
 mod tests {
+    use std::vec::Vec;
+
     use super::*;
+    use crate::exec::Serial;
+    use crate::reference::built::memory;
 
     #[test]
     fn closed_forms_are_the_sums_over_images() {
@@ -90,5 +143,33 @@ mod tests {
             assert_eq!(Compensation::Aliased(window).factor(0, 16), 1.0);
         }
         assert_eq!(Compensation::None.factor(3, 16), 1.0);
+    }
+
+    #[test]
+    fn compensated_modes_are_multiplied_axis_by_axis() {
+        let chosen = Compensation::Window(Window::TriangularShapedCloud);
+        for brick in [
+            Brick::whole(6, Space::Fourier).unwrap(),
+            Brick::transposed_slab(6, 1, 4).unwrap(),
+            Brick::general(6, Space::Fourier, [1, 2, 1], [3, 2, 3], [1, 3, 6]).unwrap(),
+        ] {
+            let before: Vec<f64> = (0..brick.reals()).map(|i| libm::sin(i as f64)).collect();
+            let mut after = before.clone();
+            let scratch = memory(compensate_scratch(&brick).unwrap());
+            compensate(&mut after, chosen, 0.5, &brick, scratch, &Serial).unwrap();
+            let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
+            for local in (0..count[0] * count[1] * count[2])
+                .map(|i| [i / (count[1] * count[2]), i / count[2] % count[1], i % count[2]])
+            {
+                let factor: f64 = (0..3)
+                    .map(|axis| Brick::mode(6, start[axis] + local[axis]).unsigned_abs() as usize)
+                    .map(|m| chosen.factor(m, 6))
+                    .product();
+                let at = 2 * (0..3).map(|axis| local[axis] * stride[axis]).sum::<usize>();
+                for part in [at, at + 1] {
+                    assert!((after[part] - 0.5 * factor * before[part]).abs() < 1e-15 * factor);
+                }
+            }
+        }
     }
 }
