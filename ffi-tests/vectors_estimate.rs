@@ -2,9 +2,9 @@
 
 use fixpair::estimate::binning::{Bin, Binning, Second, normalise, read_sums};
 use fixpair::estimate::bispectrum::{
-    self, Triangle, bispectrum, bispectrum_meshes, bispectrum_scratch, bispectrum_sums, bispectrum_sums_scratch,
-    bispectrum_values, closed_triangle_count, closed_triangles, shell_modes, squeezed_triangles, triangle_counts,
-    triangle_counts_scratch,
+    self, Triangle, bispectrum, bispectrum_meshes, bispectrum_scratch, bispectrum_sums,
+    bispectrum_sums_scratch, bispectrum_values, closed_triangle_count, closed_triangles, shell_modes,
+    squeezed_triangles, triangle_counts, triangle_counts_scratch,
 };
 use fixpair::estimate::compensation::Compensation;
 use fixpair::estimate::correlation::{
@@ -135,10 +135,8 @@ fn correlation_cases<T: Real>(add: &mut dyn FnMut(&str, Hash), f: &[T], g: &[T],
     let layout = correlation_modes_scratch(brick).expect("scratch");
     let mut memory = Memory::new(layout);
     let mut meshes = [f.to_vec(), f.to_vec()];
-    let chosen = [
-        Compensation::Window(Window::CloudInCell),
-        Compensation::Aliased(Window::PiecewiseCubicSpline),
-    ];
+    let chosen =
+        [Compensation::Window(Window::CloudInCell), Compensation::Aliased(Window::PiecewiseCubicSpline)];
     let mut hash = sizes(Hash::new(), layout);
     for (mesh, other) in meshes.iter_mut().zip([None, Some(g)]) {
         let scratch = memory.bytes(layout.size);
@@ -186,7 +184,8 @@ fn bispectrum_cases<T: Real>(add: &mut dyn FnMut(&str, Hash), modes: &[T]) {
         let mut memory = Memory::new(layout);
         let fields: Vec<&[T]> = fields.iter().map(Vec::as_slice).collect();
         let words = ExactSum::in_words(&mut sums);
-        bispectrum_sums(words, &triangles, &fields, &cells, memory.bytes(layout.size), &Serial).expect("sums");
+        bispectrum_sums(words, &triangles, &fields, &cells, memory.bytes(layout.size), &Serial)
+            .expect("sums");
         bispectrum_values(&mut values, ExactSum::of_words(&sums)).expect("values");
         let layout = bispectrum_scratch(fft, SHELLS, triangles.len()).expect("scratch");
         sizes_hash = sizes(sizes_hash, layout);

@@ -4,8 +4,8 @@ use fixpair::exec::Serial;
 use fixpair::fft::Fft3;
 use fixpair::mesh::{Brick, Space};
 use fixpair::pm::{
-    Assignment, Column, ColumnMut, Positions, Region, Window, add_cells, copy_cells, deposit, deposit_scratch,
-    interlace, read_out, read_out_scratch,
+    Assignment, Column, ColumnMut, Positions, Region, Window, add_cells, copy_cells, deposit,
+    deposit_scratch, interlace, read_out, read_out_scratch,
 };
 use fixpair::real::Real;
 
@@ -87,8 +87,8 @@ fn slabs<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
         let low = particle[0].to_f64() * (N as f64) < SLABS[1][0] as f64 * BOX;
         places[usize::from(!low)].extend(particle);
     }
-    let bricks = SLABS
-        .map(|[first, planes]| Brick::slab(N, Space::Configuration, first, planes).expect("a slab"));
+    let bricks =
+        SLABS.map(|[first, planes]| Brick::slab(N, Space::Configuration, first, planes).expect("a slab"));
     let own = bricks.map(|brick| Region::from_brick(&brick).expect("a region"));
     let wide = bricks.map(|brick| Region::with_ghosts(&brick, window, shift).expect("a region"));
     let mut meshes = [0, 1].map(|rank| vec![T::ZERO; own[rank].reals()]);

@@ -17,11 +17,11 @@ use fixpair::noise::{
 use fixpair::real::Real;
 use fixpair::scratch::Layout;
 
-use crate::vectors_estimate::estimate_cases;
-use crate::vectors_particles::particle_cases;
 use crate::vectors::{
     BOX, Cases, FINE, FINER, Hash, N, PADDING, SEED, bricks, default_linear, mode_tables, noise, rows,
 };
+use crate::vectors_estimate::estimate_cases;
+use crate::vectors_particles::particle_cases;
 
 /// Memory that begins on a cache line.
 pub(crate) struct Memory(Vec<[u64; 8]>);
