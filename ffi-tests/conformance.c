@@ -71,13 +71,13 @@ static void scalars(const fixpair_exec *exec) {
     uint32_t block[4];
     size_t reals;
     int i, axis;
-    for (i = 0; i <= 16; i++) {
+    for (i = 0; i <= 17; i++) {
         const char *message = fixpair_status_message(-i);
         hash = hash_bytes(hash, message, strlen(message));
     }
     check_case("status_message", hash);
     CHECK(strstr(fixpair_status_message(1), "unknown") != NULL);
-    CHECK(strstr(fixpair_status_message(-17), "unknown") != NULL);
+    CHECK(strstr(fixpair_status_message(-18), "unknown") != NULL);
     CHECK(strstr(fixpair_status_message(INT32_MIN), "unknown") != NULL);
     check_case("version", hash_bytes(HASH_START, fixpair_version(), strlen(fixpair_version())));
     MUST(fixpair_philox4x32_10(block, counter, key));
@@ -204,10 +204,14 @@ static void tables(const fixpair_exec *exec) {
     check_case("alpha_table", hash_bytes(HASH_START, alpha_table, table_length * sizeof(double)));
 }
 
+#include "conformance_bins.h"
+
 #define REAL float
 #define X(name) name##_f32
 #define SUFFIX ".f32"
 #include "conformance_real.h"
+#include "conformance_particles.h"
+#include "conformance_estimate.h"
 #undef REAL
 #undef X
 #undef SUFFIX
@@ -216,6 +220,8 @@ static void tables(const fixpair_exec *exec) {
 #define X(name) name##_f64
 #define SUFFIX ".f64"
 #include "conformance_real.h"
+#include "conformance_particles.h"
+#include "conformance_estimate.h"
 
 int main(int count, char **arguments) {
     static const size_t sizes[POOLS] = {1, 2, 5};
@@ -242,6 +248,8 @@ int main(int count, char **arguments) {
         CHECK(fixpair_exec_self_test(exec) == FIXPAIR_OK);
         scalars(exec);
         tables(exec);
+        ghosts();
+        bins_and_triangles(exec);
         transforms_f32(exec);
         transforms_f64(exec);
         whites_f32(exec);
@@ -250,6 +258,10 @@ int main(int count, char **arguments) {
         stages_f64(exec);
         universes_f32(exec);
         universes_f64(exec);
+        particles_and_meshes_f32(exec);
+        particles_and_meshes_f64(exec);
+        estimates_f32(exec);
+        estimates_f64(exec);
         give_back(amplitude_table);
         give_back(alpha_table);
     }

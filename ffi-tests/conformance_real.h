@@ -140,20 +140,6 @@ static void X(local)(const char *name, const REAL *phi, const fixpair_brick *bri
     X(close)(&work);
 }
 
-static void X(sums)(const char *kind, const REAL *f, const REAL *g, size_t length, const fixpair_brick *brick,
-                    const fixpair_exec *exec) {
-    const uint64_t edges[7] = {1, 4, 9, 16, 25, 36, 49};
-    fixpair_bin bins[6];
-    fixpair_layout layout;
-    void *scratch;
-    MUST(fixpair_power_sums_scratch(&layout, brick, edges, 7));
-    check_named("power_sums_scratch", "", SUFFIX, hash_layout(HASH_START, layout));
-    scratch = take(layout.size);
-    MUST(X(fixpair_power_sums)(bins, 6, edges, 7, f, g, length, brick, scratch, layout.size, exec));
-    check_named("power_sums", kind, SUFFIX, hash_bytes(HASH_START, bins, sizeof bins));
-    give_back(scratch);
-}
-
 static void X(stages)(const fixpair_exec *exec) {
     fixpair_brick brick, cells, fine;
     fixpair_realisation normal;
@@ -218,8 +204,6 @@ static void X(stages)(const fixpair_exec *exec) {
     }
     check_named("displace", "", SUFFIX, hash);
     X(close)(&transform);
-    X(sums)("", density, NULL, length, &brick, exec);
-    X(sums)(".cross", density, source, length, &brick, exec);
     give_back(density);
     give_back(source);
 }

@@ -32,7 +32,10 @@ Conditions = structure("Conditions", struct_size=c_size_t, realisation=Realisati
                        redshift=c_double, box_size=c_double, f_nl=c_double, g_nl=c_double, convention=c_int32,
                        order=c_int32)
 Components = structure("Components", x=c_void_p, y=c_void_p, z=c_void_p, stride=c_size_t, length=c_size_t)
-Bin = structure("Bin", modes=c_uint64, wavenumber=c_double, power=c_double)
+Positions = structure("Positions", x=c_void_p, y=c_void_p, z=c_void_p, stride=c_size_t, length=c_size_t)
+Binning = structure("Binning", struct_size=c_size_t, edges=c_void_p, edges_len=c_size_t, second=c_int32,
+                    orders=ctypes.c_uint32, second_edges=c_void_p, second_edges_len=c_size_t, axis=c_double * 3)
+Bin = structure("Bin", count=c_uint64, first=c_double, second=c_double)
 
 CONFIGURATION, FOURIER = 0, 1
 NORMAL, FIXED, FIXED_TO_MEAN = 0, 1, 2
@@ -42,9 +45,13 @@ CMB, LSS = 0, 1
 POWER, TRANSFER, EISENSTEIN_HU, EISENSTEIN_HU_SMOOTH = 0, 1, 2, 3
 AS_GIVEN, SIGMA8, AMPLITUDE, A_S = 0, 1, 2, 3
 FIRST, SECOND = 1, 2
+NGP, CIC, TSC, PCS = 1, 2, 3, 4
+COSINE, PARALLEL = 1, 2
+WINDOW, ALIASED = 16, 32
+BISPECTRUM_WORDS = 42
 
-# What a letter of a signature stands for: p pointer, n size, d double, i int32, u uint64.
-LETTERS = {"p": c_void_p, "n": c_size_t, "d": c_double, "i": c_int32, "u": c_uint64}
+# What a letter of a signature stands for: p pointer, n size, d double, i int32, w uint32, u uint64.
+LETTERS = {"p": c_void_p, "n": c_size_t, "d": c_double, "i": c_int32, "w": ctypes.c_uint32, "u": c_uint64}
 
 SIGNATURES = {
     "brick_whole": "pnin", "brick_slab": "pninn", "brick_transposed_slab": "pnnn", "brick_reals": "pp",
@@ -53,7 +60,13 @@ SIGNATURES = {
     "cosmology_init": "p", "radiation_density": "pddd", "expansion": "ppnp", "growth_factors": "ppnp",
     "growth_suppression": "pp", "linear_power": "ppnppd", "linear_transfer": "ppnpp", "linear_sigma": "pdpp",
     "alpha": "ppnppdi", "mode_table_length": "pn", "potential_amplitude_table": "pnndppip",
-    "alpha_table": "pnndppdip", "conditions_init": "pu", "particle_ids": "pnpup", "power_sums_scratch": "pppn",
+    "alpha_table": "pnndppdip", "conditions_init": "pu", "particle_ids": "pnpup", "brick_with_ghosts": "ppid",
+    "binning_init": "ppn", "binning_lengths": "ppppn", "binning_read": "pnpnpnpn", "binning_normalise": "pnpnwd",
+    "edges_uniform": "pndd", "edges_wavenumbers": "ppnd", "edges_exact": "pnu", "power_sums_scratch": "pppn",
+    "subtract_shot_noise": "pnpnpnwpn", "correlation_modes_scratch": "pp", "correlation_sums_scratch": "pppn",
+    "closed_triangle_count": "ppnp", "closed_triangles": "pnpnp", "squeezed_triangles": "pnnn",
+    "triangle_counts_scratch": "ppnpnn", "triangle_counts": "ppnpnnpnp", "bispectrum_values": "ppn",
+    "bispectrum_normalise": "ppnndd", "bispectrum_shot_noise": "ppnpnd", "bispectrum_reduced": "pppnpn",
 }
 TWINS = {
     "fft_tables_scratch": "pn", "fft_tables_init": "pnn", "fft_scratch": "pn", "fft_init": "ppnnpnp",
@@ -61,7 +74,11 @@ TWINS = {
     "initial_conditions_scratch": "pppp", "initial_conditions": "ppppppnp", "scale_modes": "pnppnp",
     "copy_modes": "pnppnpp", "add_local_scratch": "pp", "add_local": "pnpddppnpnp",
     "second_order_source": "pnpnpppppnp", "displacement": "pnpnpndpp", "displace": "ppppnpndddp",
-    "power_sums": "pnpnppnppnp",
+    "deposit_scratch": "ppni", "deposit": "pnpppndidpnp", "read_out_scratch": "ppni", "read_out": "pnpnppdidpnp",
+    "add_cells": "pnppnpp", "copy_cells": "pnppnpp", "interlace": "ppnpp", "power_sums": "pnpnnpnppppnp",
+    "shot_noise": "ppud", "correlation_modes": "ppniidppnp", "correlation_sums": "pnpnnpppnp",
+    "shell_modes": "ppnpuup", "bispectrum_sums_scratch": "ppnn", "bispectrum_sums": "ppnpnnppnp",
+    "bispectrum_meshes": "ppn", "bispectrum_scratch": "ppnn", "bispectrum": "pppnpnpnppnpnp",
 }
 SIGNATURES.update({f"{name}_{real}": signature for name, signature in TWINS.items() for real in ("f32", "f64")})
 

@@ -1,15 +1,16 @@
 /*
- * One initial condition where there is nothing: no C library, no heap, no threads, no main. Linux on x86-64; exits with 0 if the particles
- * are there, else with a number that says where it stopped.
+ * One initial condition where there is nothing, and its power spectrum and bispectrum: no C library, no heap, no threads, no main. Linux on
+ * x86-64; exits with 0 if the particles and their numbers are there, else with a number that says where it stopped.
  */
 #define FIXPAIR_NO_THREADS
 #include "fixpair.h"
 
-enum { SIDE = 16, PARTICLES = SIDE * SIDE * SIDE, MEMORY = 1 << 20 };
+enum { SIDE = 16, PARTICLES = SIDE * SIDE * SIDE, MEMORY = 1 << 22, SHELLS = 3, MOST = 10 };
 
 static unsigned char memory[MEMORY] __attribute__((aligned(64)));
 static size_t used;
 static float position[3 * PARTICLES], velocity[3 * PARTICLES];
+static int64_t sums[MOST * FIXPAIR_BISPECTRUM_WORDS];
 
 /* What a compiler may call on its own. */
 void *memcpy(void *restrict to, const void *restrict from, size_t size) {
@@ -73,6 +74,84 @@ static void must(fixpair_status_t status, int where) {
     }
 }
 
+static void *room(size_t size) {
+    fixpair_layout layout;
+    layout.size = size;
+    layout.align = 64;
+    return piece(layout);
+}
+
+/* The particles on a mesh, and what is made of it. */
+static void measure(const fixpair_fft_f32 *fft) {
+    static const size_t pairs[1][2] = {{0, 0}};
+    const uint64_t edges[SHELLS + 1] = {1, 4, 16, 36};
+    const int32_t compensation = FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_CIC;
+    fixpair_positions_f32 places;
+    fixpair_layout layout;
+    fixpair_binning binning;
+    fixpair_bin *bins;
+    uint32_t triangles[3 * MOST];
+    uint64_t counts[MOST];
+    double *power, b[MOST];
+    int64_t *words;
+    size_t length, count, bins_len, values_len, words_len, i;
+    float *mesh, *fields;
+    void *scratch;
+    places.x = position;
+    places.y = position + 1;
+    places.z = position + 2;
+    places.stride = 3;
+    places.length = PARTICLES;
+    mesh = room(fft->length * sizeof *mesh);
+    must(fixpair_deposit_scratch_f32(&layout, &fft->configuration, PARTICLES, FIXPAIR_WINDOW_CIC), 10);
+    scratch = piece(layout);
+    must(fixpair_deposit_f32(mesh, fft->length, &fft->configuration, &places, NULL, 0, 1000.0, FIXPAIR_WINDOW_CIC, 0.0,
+                             scratch, layout.size, NULL), 11);
+    if (fft->forward(fft->context, mesh) != 0 || mesh[0] < 4095.9f || mesh[0] > 4096.1f) {
+        leave(12);
+    }
+    must(fixpair_binning_init(&binning, edges, SHELLS + 1), 13);
+    must(fixpair_binning_lengths(&bins_len, &values_len, &words_len, &binning, 1), 14);
+    bins = room(bins_len * sizeof *bins);
+    power = room(values_len * sizeof *power);
+    words = room(words_len * sizeof *words);
+    must(fixpair_power_sums_scratch(&layout, &fft->fourier, &binning, 1), 15);
+    scratch = piece(layout);
+    {
+        const float *modes = mesh;
+        must(fixpair_power_sums_f32(words, words_len, &modes, 1, fft->length, pairs, 1, &compensation, &fft->fourier,
+                                    &binning, scratch, layout.size, NULL), 16);
+    }
+    must(fixpair_binning_read(bins, bins_len, power, values_len, words, words_len, &binning, 1), 17);
+    must(fixpair_binning_normalise(power, values_len, bins, bins_len, 1, 1e9 / PARTICLES / PARTICLES), 18);
+    for (i = 0; i < SHELLS; i++) {
+        if (!(power[i] > 0)) {
+            leave(19);
+        }
+    }
+    must(fixpair_closed_triangle_count(&count, edges, SHELLS + 1, NULL), 20);
+    if (count > MOST) {
+        leave(21);
+    }
+    must(fixpair_closed_triangles(triangles, count, edges, SHELLS + 1, NULL), 22);
+    must(fixpair_triangle_counts_scratch(&layout, triangles, count, edges, SHELLS + 1, SIDE), 23);
+    scratch = piece(layout);
+    must(fixpair_triangle_counts(counts, triangles, count, edges, SHELLS + 1, SIDE, scratch, layout.size, NULL), 24);
+    must(fixpair_bispectrum_meshes_f32(&length, fft, SHELLS), 25);
+    fields = room(length * sizeof *fields);
+    must(fixpair_bispectrum_scratch_f32(&layout, fft, SHELLS, count), 26);
+    scratch = piece(layout);
+    must(fixpair_bispectrum_f32(sums, NULL, triangles, count, edges, SHELLS + 1, mesh, fft->length, fft, fields, length,
+                                scratch, layout.size, NULL), 27);
+    must(fixpair_bispectrum_values(b, sums, count), 28);
+    must(fixpair_bispectrum_normalise(b, counts, count, SIDE, 1000.0, 1.0 / PARTICLES), 29);
+    for (i = 0; i < count; i++) {
+        if (counts[i] == 0 || b[i] == 0) {
+            leave(30);
+        }
+    }
+}
+
 static void make(void) {
     fixpair_conditions conditions;
     fixpair_fft_f32 fft;
@@ -107,7 +186,11 @@ static void make(void) {
         }
         moved += velocity[i] != 0;
     }
-    leave(moved == 3 * PARTICLES ? 0 : 9);
+    if (moved != 3 * PARTICLES) {
+        leave(9);
+    }
+    measure(&fft);
+    leave(0);
 }
 
 /* The kernel leaves the stack aligned as main would find it only after a call. */

@@ -83,15 +83,14 @@ static fixpair_brick brick(void) {
 }
 
 static void sane(fixpair_status_t status) {
-    CHECK(status <= 0 && status >= FIXPAIR_ERROR_CONVERGENCE);
+    CHECK(status <= 0 && status >= FIXPAIR_ERROR_OUTSIDE);
 }
 
 static void meshes(double *data, float *single) {
     fixpair_brick b = brick(), c = brick();
     fixpair_realisation realisation;
-    fixpair_layout layout = {0, 0};
     fixpair_components_f64 particles[2];
-    uint64_t edges[3], *ids = (uint64_t *)data;
+    uint64_t *ids = (uint64_t *)data;
     size_t reals;
     MUST(fixpair_realisation_init(&realisation, word()));
     if (word() % 3 == 0) {
@@ -100,9 +99,6 @@ static void meshes(double *data, float *single) {
         realisation.nyquist = choice();
         realisation.scheme = choice();
     }
-    edges[0] = word() >> (word() % 64);
-    edges[1] = word() >> (word() % 64);
-    edges[2] = word() >> (word() % 64);
     sane(fixpair_brick_whole(&c, size(), choice(), size()));
     sane(fixpair_brick_slab(&c, size(), choice(), size(), size()));
     sane(fixpair_brick_transposed_slab(&c, size(), size(), size()));
@@ -113,7 +109,6 @@ static void meshes(double *data, float *single) {
     sane(fixpair_scale_modes_f64(data, LENGTH, &b, data + LENGTH, LENGTH, NULL));
     c = brick();
     sane(fixpair_copy_modes_f64(data, LENGTH, &b, data + LENGTH, LENGTH, &c, NULL));
-    sane(fixpair_power_sums_scratch(&layout, &b, edges, 3));
     sane(fixpair_particle_ids(ids, b.count[0] % 9 * (b.count[1] % 9) * (b.count[2] % 9), &b, word(), NULL));
     for (reals = 0; reals < 2; reals++) {
         particles[reals].x = data + reals * 1536;
@@ -208,9 +203,13 @@ static void universes(double *data, void *scratch, size_t scratch_len, const fix
     }
 }
 
+#include "fuzz_estimate.h"
+
 int main(void) {
     double *data = (double *)take((2 * LENGTH + 2 * VALUES) * sizeof *data);
     float *single = (float *)take(LENGTH * sizeof *single);
+    double *memory = (double *)take(BYTES);
+    int64_t *sums = (int64_t *)take(WORDS * sizeof *sums);
     fixpair_conditions conditions;
     fixpair_fft_f64 fft;
     fixpair_layout layout, work;
@@ -228,15 +227,22 @@ int main(void) {
     for (round = 0; round < ROUNDS; round++) {
         sizes();
         meshes(data, single);
+        clouds(data, single, memory);
+        estimates(data, single, memory, sums);
         if (round % 8 == 0) {
             universes(data, scratch, layout.size, &fft);
+            bispectra(data, memory, sums, &fft);
         }
         memset(data, 0, (2 * LENGTH + 2 * VALUES) * sizeof *data);
         CHECK_CANARIES(data);
         CHECK_CANARIES(single);
+        CHECK_CANARIES(memory);
+        CHECK_CANARIES(sums);
     }
     give_back(data);
     give_back(single);
+    give_back(memory);
+    give_back(sums);
     give_back(tables);
     give_back(workspace);
     give_back(scratch);

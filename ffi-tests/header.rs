@@ -50,7 +50,12 @@ fn generate() -> String {
         config.export.rename.insert(rust.into(), c.into());
     }
     config.defines.insert("feature = std".into(), "FIXPAIR_THREADS".into());
-    config.export.exclude.extend(["EARLIEST_GROWTH".into(), "STEP".into(), "ALIGN".into()]);
+    config.export.exclude.extend([
+        "EARLIEST_GROWTH".into(),
+        "STEP".into(),
+        "ALIGN".into(),
+        "HIGHEST_ORDER".into(),
+    ]);
     let mut builder = cbindgen::Builder::new().with_config(config);
     for file in STRUCTS {
         builder = builder.with_src(root().join(file));

@@ -5,6 +5,7 @@
  * host FILE: the cases of ffi-tests/vectors.rs
  */
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <condition_variable>
 #include <cstddef>
@@ -12,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "check.h"
@@ -36,6 +38,13 @@ struct Names;
         static constexpr auto conditions_scratch = fixpair_initial_conditions_scratch_##suffix;            \
         static constexpr auto conditions = fixpair_initial_conditions_##suffix;                            \
         static constexpr auto white_modes = fixpair_white_modes_##suffix;                                  \
+        typedef fixpair_positions_##suffix Positions;                                                      \
+        static constexpr auto deposit_scratch = fixpair_deposit_scratch_##suffix;                          \
+        static constexpr auto deposit = fixpair_deposit_##suffix;                                          \
+        static constexpr auto power_sums = fixpair_power_sums_##suffix;                                    \
+        static constexpr auto bispectrum_meshes = fixpair_bispectrum_meshes_##suffix;                      \
+        static constexpr auto bispectrum_scratch = fixpair_bispectrum_scratch_##suffix;                    \
+        static constexpr auto bispectrum = fixpair_bispectrum_##suffix;                                    \
     };
 FIXPAIR_NAMES(float, f32)
 FIXPAIR_NAMES(double, f64)
@@ -336,6 +345,8 @@ void two_ranks() {
     }
 }
 
+#include "host_estimate.h"
+
 /* A few refusals, as a host in C++ meets them: as exceptions, with vectors untouched. */
 template <class T>
 void refusals() {
@@ -372,8 +383,12 @@ int main(int count, char **arguments) {
     must(fixpair_exec_self_test(&exec));
     one_process<float>(&exec);
     one_process<double>(&exec);
+    estimates<float>(&exec);
+    estimates<double>(&exec);
     one_process<float>(nullptr);
     one_process<double>(nullptr);
+    estimates<float>(nullptr);
+    estimates<double>(nullptr);
     two_ranks<float>();
     two_ranks<double>();
     refusals<float>();

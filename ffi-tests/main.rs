@@ -8,4 +8,6 @@ mod header;
 mod native;
 mod programs;
 mod vectors;
+mod vectors_estimate;
+mod vectors_particles;
 mod vectors_real;

@@ -36,7 +36,6 @@ CALL(mode_table_length, (P(0), L(0)))
 CALL(potential_amplitude_table, (P(0), L(0), L(1), a->d[0], P(1), P(2), a->i[0], P(3)))
 CALL(alpha_table, (P(0), L(0), L(1), a->d[0], P(1), P(2), a->d[1], a->i[0], P(3)))
 CALL(particle_ids, (P(0), L(0), P(1), a->u, P(2)))
-CALL(power_sums_scratch, (P(0), P(1), P(2), L(0)))
 
 static void bricks(void) {
     size_t *reals;
@@ -306,32 +305,14 @@ static void ids(void) {
     ACCEPTED((brick->count[0] = 0, t.a.n[0] = 0, t.a.p[0] = NULL));
 }
 
-static void edges_of_sums(void) {
-    fixpair_brick *brick;
-    uint64_t *edges;
-    size_t i;
-    begin("power_sums_scratch", call_power_sums_scratch);
-    STRUCT(0, OUT, fixpair_layout);
-    brick = STRUCT(1, IN, fixpair_brick);
-    edges = ARRAY(2, IN, uint64_t, SHELLS + 1);
-    for (i = 0; i <= SHELLS; i++) {
-        edges[i] = (i + 1) * (i + 1);
-    }
-    MUST(fixpair_brick_whole(brick, SIDE, FIXPAIR_SPACE_FOURIER, 0));
-    length(0, SHELLS + 1, FREE);
-    refuse_pointers_and_lengths();
-    REFUSED(FIXPAIR_ERROR_TABLE, t.a.n[0] = 0);
-    REFUSED(FIXPAIR_ERROR_TABLE, t.a.n[0] = 1);
-    REFUSED(FIXPAIR_ERROR_TABLE, edges[2] = edges[1]);
-    REFUSED(FIXPAIR_ERROR_TABLE, edges[0] = UINT64_MAX);
-    refuse_bricks(brick);
-}
+#include "refusals_bins.h"
 
 #define REAL float
 #define X(name) name##_f32
 #define SUFFIX "_f32"
 #include "refusals_real.h"
 #include "refusals_stages.h"
+#include "refusals_estimate.h"
 #undef REAL
 #undef X
 #undef SUFFIX
@@ -341,6 +322,7 @@ static void edges_of_sums(void) {
 #define SUFFIX "_f64"
 #include "refusals_real.h"
 #include "refusals_stages.h"
+#include "refusals_estimate.h"
 
 int main(void) {
     t.memory = (unsigned char *)take(ARENA);
@@ -353,7 +335,13 @@ int main(void) {
     spectra();
     mode_tables();
     ids();
-    edges_of_sums();
+    ghosts_of_bricks();
+    edges_of_bins();
+    binnings();
+    scratch_of_sums();
+    lists_of_triangles();
+    counts_of_triangles();
+    numbers_of_triangles();
     refuse_transforms_f32();
     refuse_transforms_f64();
     refuse_modes_f32();
@@ -362,6 +350,12 @@ int main(void) {
     refuse_stages_f64();
     refuse_universes_f32();
     refuse_universes_f64();
+    refuse_particles_f32();
+    refuse_particles_f64();
+    refuse_spectra_f32();
+    refuse_spectra_f64();
+    refuse_bispectra_f32();
+    refuse_bispectra_f64();
     give_back(t.memory);
     give_back(t.pristine);
     give_back(t.before);

@@ -1,5 +1,6 @@
 /*
- * The half of refusals.c that exists in both precisions: transform, random modes, spectra. The rest is in refusals_stages.h.
+ * The half of refusals.c that exists in both precisions: transform and random modes. The rest is in refusals_stages.h and
+ * refusals_estimate.h.
  */
 
 #define CALL_REAL(name, arguments_of_it) \
@@ -13,7 +14,6 @@ CALL_REAL(fft_self_test, (P(0), P(1), L(0)))
 CALL_REAL(white_modes, (P(0), L(0), P(1), P(2), P(3), L(1), P(4)))
 CALL_REAL(impose, (P(0), L(0), P(1), P(2), P(3)))
 CALL_REAL(modes_from_field, (P(0), L(0), P(1), P(2), P(3)))
-CALL_REAL(power_sums, (P(0), L(0), P(1), L(1), P(2), P(3), L(2), P(4), P(5), L(3), P(6)))
 
 /* A built-in transform in the arena. */
 static void X(make_hook)(X(fixpair_fft) *fft, size_t side, size_t padding) {
@@ -134,12 +134,10 @@ static void X(refuse_transforms)(void) {
 static void X(refuse_modes)(void) {
     fixpair_brick brick, *own;
     fixpair_realisation *realisation;
-    fixpair_layout layout;
     X(fixpair_fft) *fft;
     REAL *modes;
     double *table;
-    uint64_t *edges;
-    size_t reals, entries, i;
+    size_t reals, entries;
     MUST(fixpair_brick_whole(&brick, SIDE, FIXPAIR_SPACE_FOURIER, 0));
     MUST(fixpair_brick_reals(&reals, &brick));
     MUST(fixpair_mode_table_length(&entries, SIDE));
@@ -190,33 +188,4 @@ static void X(refuse_modes)(void) {
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, modes[20] = (REAL)NAN);
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, modes[0] = -(REAL)INFINITY);
     SPOILED(FIXPAIR_ERROR_HOOK, fft->forward = X(failing_pass));
-
-    begin("power_sums" SUFFIX, X(call_power_sums));
-    ARRAY(0, OUT, fixpair_bin, SHELLS);
-    edges = ARRAY(1, IN, uint64_t, SHELLS + 1);
-    for (i = 0; i <= SHELLS; i++) {
-        edges[i] = (i + 1) * (i + 1);
-    }
-    MUST(fixpair_power_sums_scratch(&layout, &brick, edges, SHELLS + 1));
-    modes = ARRAY(2, IN, REAL, reals);
-    ARRAY(3, IN, REAL, reals);
-    t.slots[3].optional = 1;
-    own = STRUCT(4, IN, fixpair_brick);
-    *own = brick;
-    SCRATCH_OF(5, layout.size);
-    exec_at(6);
-    length(0, SHELLS, EXACT);
-    length(1, SHELLS + 1, EXACT);
-    length(2, reals, LEAST);
-    length(3, layout.size, SCRATCH);
-    refuse_pointers_and_lengths();
-    ACCEPTED(t.a.p[3] = NULL);
-    ACCEPTED(t.a.p[3] = modes);
-    refuse_bricks(own);
-    REFUSED(FIXPAIR_ERROR_TABLE, edges[2] = edges[1]);
-    REFUSED(FIXPAIR_ERROR_TABLE, edges[2] = 0);
-    REFUSED(FIXPAIR_ERROR_TABLE, t.a.n[1] = 1);
-    REFUSED(FIXPAIR_ERROR_TABLE, (t.a.n[1] = 0, t.a.n[0] = 0));
-    REFUSED(FIXPAIR_ERROR_NOT_FINITE, (modes[2] = (REAL)NAN, t.a.p[3] = NULL));
-    REFUSED(FIXPAIR_ERROR_NOT_FINITE, (modes[2] = (REAL)INFINITY, t.a.p[3] = NULL));
 }

@@ -16,6 +16,8 @@ use fixpair::noise::philox::philox4x32_10;
 use fixpair::status::Error;
 
 use crate::native::folder;
+use crate::vectors_estimate::bin_cases;
+use crate::vectors_particles::ghost_cases;
 use crate::vectors_real::real_cases;
 
 /// Side of the mesh, of the finer mesh for squares, and of that for cubes.
@@ -71,6 +73,8 @@ pub(crate) static VECTORS: LazyLock<PathBuf> = LazyLock::new(|| {
     let mut cases = Cases::default();
     scalar_cases(&mut cases);
     cosmology_cases(&mut cases);
+    ghost_cases(&mut cases);
+    bin_cases(&mut cases);
     real_cases::<f32>(&mut cases, "f32");
     real_cases::<f64>(&mut cases, "f64");
     let path = folder().join("vectors.txt");

@@ -1,9 +1,6 @@
 //! The cases that exist in both precisions.
 
 use fixpair::cosmology::{Convention, Cosmology, Linear, Table};
-use fixpair::estimate::binning::{Bin, Binning, normalise, read_sums};
-use fixpair::estimate::compensation::Compensation;
-use fixpair::estimate::power::{power_sums, power_sums_scratch};
 use fixpair::exec::Serial;
 use fixpair::fft::{Fft3, Tables, Transform, recommended_padding};
 use fixpair::initial::conditions::{
@@ -17,23 +14,24 @@ use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{
     Amplitude, Nyquist, Phase, Realisation, impose, unit_modes_from_field, white_modes, white_modes_coloured,
 };
-use fixpair::pm::Window;
 use fixpair::real::Real;
 use fixpair::scratch::Layout;
 
 use crate::vectors::{
     BOX, Cases, FINE, FINER, Hash, N, PADDING, SEED, bricks, default_linear, mode_tables, noise, rows,
 };
+use crate::vectors_estimate::estimate_cases;
+use crate::vectors_particles::particle_cases;
 
 /// Memory that begins on a cache line.
-struct Memory(Vec<[u64; 8]>);
+pub(crate) struct Memory(Vec<[u64; 8]>);
 
 impl Memory {
-    fn new(layout: Layout) -> Self {
+    pub(crate) fn new(layout: Layout) -> Self {
         Self(vec![[0; 8]; layout.size / 64 + 2])
     }
 
-    fn bytes(&mut self, size: usize) -> &mut [u8] {
+    pub(crate) fn bytes(&mut self, size: usize) -> &mut [u8] {
         // SAFETY: any bytes are integers and the other way round.
         let bytes = unsafe { self.0.align_to_mut::<u8>().1 };
         let skip = bytes.as_ptr().align_offset(64);
@@ -50,7 +48,7 @@ fn bytes<T: Real>(value: T) -> Vec<u8> {
 }
 
 /// The elements of a brick in the order of their indices, wherever they lie.
-fn elements<T: Real>(mut hash: Hash, data: &[T], brick: &Brick) -> Hash {
+pub(crate) fn elements<T: Real>(mut hash: Hash, data: &[T], brick: &Brick) -> Hash {
     let (count, stride, width) = (brick.count(), brick.stride(), brick.space().width());
     for x in 0..count[0] {
         for y in 0..count[1] {
@@ -65,7 +63,11 @@ fn elements<T: Real>(mut hash: Hash, data: &[T], brick: &Brick) -> Hash {
     hash
 }
 
-fn with_transform<T: Real, R>(n: usize, padding: usize, body: impl FnOnce(&mut Transform<'_, T>) -> R) -> R {
+pub(crate) fn with_transform<T: Real, R>(
+    n: usize,
+    padding: usize,
+    body: impl FnOnce(&mut Transform<'_, T>) -> R,
+) -> R {
     let layout = Tables::<T>::layout(n).expect("a side");
     let mut memory = Memory::new(layout);
     let tables = Tables::<T>::new(n, memory.bytes(layout.size)).expect("tables");
@@ -81,6 +83,8 @@ pub(crate) fn real_cases<T: Real>(cases: &mut Cases, suffix: &str) {
     transform_cases::<T>(&mut add);
     white_cases::<T>(&mut add);
     stage_cases::<T>(&mut add);
+    particle_cases::<T>(&mut add);
+    estimate_cases::<T>(&mut add);
     for (name, order, fine, realisation, local) in conditions() {
         add(name, universe::<T>(order, fine, realisation, local));
     }
@@ -187,30 +191,9 @@ fn stage_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
             .expect("particles");
     }
     add("displace", triples(triples(Hash::new(), &position), &velocity));
-    let edges: Vec<u64> = (1..=7).map(|b| b * b).collect();
-    let binning = Binning { axis: [0.0, 0.0, 2.0], orders: 0b10101, ..Binning::shells(&edges) };
-    let pairs = [[0, 0], [0, 1]];
-    let layout = power_sums_scratch(&brick, &binning, pairs.len()).expect("scratch");
-    add("power_sums_scratch", Hash::new().integers(&[layout.size as u64, layout.align as u64]));
-    let mut sums = vec![0_i64; binning.words(pairs.len()).expect("words")];
-    let mut scratch = Memory::new(layout);
-    let scratch = scratch.bytes(layout.size);
-    let aliased = Compensation::Aliased(Window::CloudInCell);
-    let fields = [&density[..], &source];
-    let compensation = [Compensation::None, aliased];
-    power_sums(&mut sums, &fields, &pairs, &compensation, &brick, &binning, scratch, &Serial).expect("sums");
-    add("power_sums", sums.iter().fold(Hash::new(), |hash, &word| hash.integers(&[word.cast_unsigned()])));
-    let mut bins = vec![Bin::default(); edges.len() - 1];
-    let mut values = vec![0.0; bins.len() * pairs.len() * binning.multipoles()];
-    read_sums(&mut bins, &mut values, &sums, &binning, pairs.len()).expect("bins");
-    normalise(&mut values, &bins, binning.orders, BOX * BOX * BOX).expect("spectra");
-    let hash = bins
-        .iter()
-        .fold(Hash::new(), |hash, bin| hash.integers(&[bin.count]).doubles(&[bin.first, bin.second]));
-    add("power", hash.doubles(&values));
 }
 
-fn triples<T: Real>(hash: Hash, values: &[T]) -> Hash {
+pub(crate) fn triples<T: Real>(hash: Hash, values: &[T]) -> Hash {
     values.iter().fold(hash, |hash, &value| hash.bytes(&bytes(value)))
 }
 

@@ -34,9 +34,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The highest multipole. */
-#define HIGHEST_ORDER 4
-
 /* Done. */
 #define FIXPAIR_OK 0
 

@@ -11,7 +11,7 @@ use crate::estimate::bispectrum::{self, Triangle};
 use crate::estimate::exact::ExactSum;
 use crate::real::Real;
 use crate::scratch::Layout;
-use crate::status::Result;
+use crate::status::{Error, Result};
 
 /// 64-bit integers in the sum of one triangle. Sums of parts of a mesh are added integer by integer: MPI_Allreduce with MPI_INT64_T and
 /// MPI_SUM makes those of the whole mesh of them, bit for bit.
@@ -384,16 +384,20 @@ unsafe fn field_sums<T: Real>(
     let mut border = Border::new();
     // SAFETY: the caller's promise; a sum is as many integers as stated, and a triangle three numbers.
     unsafe {
+        let sums = border.write(sums.cast::<ExactSum>(), triangles_len)?;
         let starts = border.read(fields, shells)?;
         for &start in starts {
             // More fields than a border has room for: each is compared with what is written.
             let mut border = Border::new();
-            border.strided(sums.cast::<ExactSum>(), 1, triangles_len)?;
+            border.strided(sums.as_mut_ptr(), 1, triangles_len)?;
             border.strided(scratch.cast::<u8>(), 1, scratch_len)?;
             border.read_optional(start, len)?;
         }
-        let sums = border.write(sums.cast::<ExactSum>(), triangles_len)?;
         let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
+        let missing = |&shell: &u32| starts.get(shell as usize).is_some_and(|start| start.is_null());
+        if len > 0 && triangles.iter().flatten().any(missing) {
+            return Err(Error::Null);
+        }
         let brick = border.read_one(brick)?.check()?;
         let scratch = border.scratch(scratch, scratch_len)?;
         let exec = HostExec::new(&mut border, exec)?;
