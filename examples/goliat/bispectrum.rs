@@ -31,7 +31,7 @@ const LONG: [u64; 6] = [1, 2, 3, 4, 5, 9];
 const SQUEEZED: u32 = 3;
 
 /// Ratio of radii of the other shells.
-const RATIO: f64 = 1.3;
+const RATIO: f64 = 1.4;
 
 /// The triangles (Delta k, k, k), k_f <= Delta k < 2 k_f, of one field. The first four columns are the same for all.
 #[derive(Clone, Debug, Default)]
