@@ -15,14 +15,14 @@ pub(super) fn draw(suite: &Suite) -> Drawing {
     let k = &slice.k;
     let x = Axis::logarithmic(0.9 * k[0], 1.1 * k[k.len() - 1]);
     let scatter = scatter_axis(&bands);
-    // k^2 B is nearly level. A mean and a half of the scatter of one simulation fit.
+    // k^2 B is nearly level. One and a half sigma of one simulation fit, and the signal with most of one.
     let theory =
         |fnl: f64| scaled(k, &slice.template.iter().map(|template| fnl * template).collect::<Vec<_>>());
     let fnl = suite.configuration.fnl;
     let [most, signal] = [&scaled(k, &slice.sigma), &theory(fnl)]
         .map(|y| y.iter().fold(0.0, |most: f64, y| most.max(y.abs())));
-    let (low, high) = (-1.5 * most, 1.5 * most);
-    let y = Axis::linear(low.min(low + theory(fnl)[0].signum() * signal), high.max(signal + 0.8 * most));
+    let reach = (signal + 0.8 * most).max(1.5 * most);
+    let y = Axis::linear(-reach, reach);
     for ((half, bands), [upper, lower]) in halves.into_iter().zip(&bands).zip(areas) {
         let axes = Axes { area: upper, x, y };
         draw_means(&mut drawing, &axes, k, bands, suite.seeds.len());
