@@ -11,15 +11,12 @@ use fixpair::exec::{Exec, Serial, Threads};
 use fixpair::fft::{Fft3, Tables, Transform, recommended_padding};
 use fixpair::mesh::{Brick, Space};
 use fixpair::real::Real;
-use fixpair::scratch::Layout;
 
 mod fftw;
+#[path = "../examples/common/memory.rs"]
+mod memory;
 
-fn memory(layout: Layout) -> (Vec<u8>, usize) {
-    let bytes = vec![0; layout.size + layout.align];
-    let start = bytes.as_ptr().align_offset(layout.align);
-    (bytes, start)
-}
+use memory::Memory;
 
 fn bench<T: Real + fftw::Number>(criterion: &mut Criterion, name: &str) {
     let mut group = criterion.benchmark_group(name);
@@ -44,12 +41,12 @@ fn bench<T: Real + fftw::Number>(criterion: &mut Criterion, name: &str) {
                 _ => fftw.data.iter_mut().for_each(|x| *x = *x * scale),
             });
         }
-        let (mut tables, start) = memory(Tables::<T>::layout(n).unwrap());
-        let tables = Tables::<T>::new(n, &mut tables[start..]).unwrap();
+        let mut tables = Memory::new(Tables::<T>::layout(n).unwrap());
+        let tables = Tables::<T>::new(n, tables.bytes()).unwrap();
         let run = |name: &str, padding: usize, exec: &dyn Exec, group: &mut _| {
-            let (mut work, start) = memory(Transform::<T>::workspace(n).unwrap());
+            let mut work = Memory::new(Transform::<T>::workspace(n).unwrap());
             let brick = Brick::whole_padded(n, Space::Configuration, padding).unwrap();
-            let mut fft = Transform::new(&tables, brick, &mut work[start..], exec).unwrap();
+            let mut fft = Transform::new(&tables, brick, work.bytes(), exec).unwrap();
             let scale = T::from_f64(1.0 / cells);
             let mut data = values(fft.length());
             pair(group, name, n, &mut |direction| match direction {

@@ -26,22 +26,11 @@ use fixpair::initial::png::{Local, add_local};
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{Realisation, white_modes_coloured};
 use fixpair::real::Real;
-use fixpair::scratch::Layout;
 
-/// Memory that begins on a cache line.
-struct Aligned(Vec<u8>, usize);
+#[path = "../examples/common/memory.rs"]
+mod memory;
 
-impl Aligned {
-    fn new(layout: Layout) -> Self {
-        let bytes = vec![0; layout.size + layout.align];
-        let start = bytes.as_ptr().align_offset(layout.align);
-        Self(bytes, start)
-    }
-
-    fn bytes(&mut self) -> &mut [u8] {
-        &mut self.0[self.1..]
-    }
-}
+use memory::Memory;
 
 fn conditions(box_size: f64) -> InitialConditions<'static> {
     let cosmology = Cosmology::goliat();
@@ -66,13 +55,13 @@ fn sides() -> Vec<usize> {
 /// A built-in transform of side n on memory of its own.
 struct Built<'a, T: Real> {
     tables: &'a Tables<'a, T>,
-    work: Aligned,
+    work: Memory,
     exec: &'a dyn Exec,
 }
 
 impl<'a, T: Real> Built<'a, T> {
     fn new(tables: &'a Tables<'a, T>, exec: &'a dyn Exec) -> Self {
-        Self { tables, work: Aligned::new(Transform::<T>::workspace(tables.n()).unwrap()), exec }
+        Self { tables, work: Memory::new(Transform::<T>::workspace(tables.n()).unwrap()), exec }
     }
 
     fn transform(&mut self) -> Transform<'_, T> {
@@ -91,7 +80,7 @@ fn whole<T: Real>(criterion: &mut Criterion, name: &str) {
         group.throughput(Throughput::Elements(cells as u64));
         let m = next_side(3 * n / 2).unwrap();
         let (mut coarse, mut fine) =
-            (Aligned::new(Tables::<T>::layout(n).unwrap()), Aligned::new(Tables::<T>::layout(m).unwrap()));
+            (Memory::new(Tables::<T>::layout(n).unwrap()), Memory::new(Tables::<T>::layout(m).unwrap()));
         let coarse = Tables::<T>::new(n, coarse.bytes()).unwrap();
         let fine = Tables::<T>::new(m, fine.bytes()).unwrap();
         let (mut x, mut v) = (vec![T::ZERO; 3 * cells], vec![T::ZERO; 3 * cells]);
@@ -102,7 +91,7 @@ fn whole<T: Real>(criterion: &mut Criterion, name: &str) {
                 let (mut fft, mut work) = (coarse.transform(), fine.transform());
                 let optional = dealiased.then_some(&work as &dyn Fft3<T>);
                 let layout = initial_conditions_scratch(Order::Second, &fft, optional).unwrap();
-                let mut scratch = Aligned::new(layout);
+                let mut scratch = Memory::new(layout);
                 let kind = if dealiased { "dealiased" } else { "aliased" };
                 eprintln!(
                     "{kind}, n = {n}: {:.1} bytes of scratch a cell",
@@ -134,7 +123,7 @@ fn stages<T: Real>(criterion: &mut Criterion, name: &str) {
     for n in sides() {
         let cells = n * n * n;
         group.throughput(Throughput::Elements(cells as u64));
-        let mut tables = Aligned::new(Tables::<T>::layout(n).unwrap());
+        let mut tables = Memory::new(Tables::<T>::layout(n).unwrap());
         let tables = Tables::<T>::new(n, tables.bytes()).unwrap();
         let mut built = Built::new(&tables, exec);
         let mut fft = built.transform();

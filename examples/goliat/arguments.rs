@@ -11,8 +11,9 @@ pub(crate) const HELP: &str = "\
 goliat: what Fix, Pair and Match do to the scatter of cosmological initial conditions
 
 For each seed, makes the initial conditions of the GOLIAT-PNG suite at z = 32 (Avila & Adame 2022) in eight variants:
-{normal, fixed} x {original, inverted} x {f_NL = 0, 100}; measures the power spectrum and the squeezed signal of
-primordial non-Gaussianity; prints their scatter; and writes tables (CSV) and figures (PNG, SVG).
+{normal, fixed} x {original, inverted} x {f_NL = 0, 100}; measures the power spectrum and the bispectrum, with f_NL
+from all of its triangles, and of the first seed the particles in redshift space; prints their scatter; and writes
+tables (CSV) and figures (PNG, SVG).
 
 Usage: cargo run --release --example goliat -- [options]
 

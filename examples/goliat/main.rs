@@ -2,16 +2,21 @@
 //!
 //! `cargo run --release --example goliat` makes N seeds x 8 variants of the initial conditions of the GOLIAT-PNG suite
 //! (Avila & Adame 2022, arXiv:2204.11103) at z = 32, as in the appendix of the paper, and writes tables and figures.
+//! What it measures: P(k), the bispectrum and f_NL from it, and of the first seed's particles the multipoles in redshift space.
 //! The data walks one way: arguments -> suite (measure) -> statistics -> report and figures.
 
 mod arguments;
 mod axes;
+mod bispectrum;
 #[path = "../common/boltzmann.rs"]
 #[allow(dead_code, reason = "the readers of files are for other programs")]
 mod boltzmann;
 mod drawing;
 mod figures;
 mod measure;
+#[path = "../common/memory.rs"]
+mod memory;
+mod redshift_space;
 mod report;
 mod statistics;
 mod suite;

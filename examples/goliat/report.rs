@@ -1,15 +1,17 @@
 //! What the suite says in words and numbers: a table for the terminal, and CSV files.
 
 use std::fmt::Write as _;
+use std::ops::Range;
 use std::time::Duration;
 
 use fixpair::cosmology::Cosmology;
 
+use crate::redshift_space::Multipoles;
 use crate::statistics::{
     Kind, ROUNDING, band, correlation, deviation, differences, error_of_mean, estimates, mean,
-    power_difference, quadratic_mean, ranges,
+    power_difference, quadratic_mean, ranges, squeezed_band,
 };
-use crate::suite::{Half, Suite, Variant};
+use crate::suite::{Amplitude, Half, Phase, Suite, Variant};
 use crate::universe::REDSHIFT;
 
 /// Sigma and what it is worth, as text: a scatter that is only rounding is exact.
@@ -65,6 +67,7 @@ pub(crate) fn text(suite: &Suite, threads: usize, elapsed: Duration) -> String {
     );
     power_table(&mut text, suite);
     squeezed_table(&mut text, suite);
+    multipole_table(&mut text, suite);
     text
 }
 
@@ -118,7 +121,7 @@ struct Squeezed {
 }
 
 fn squeezed_rows(suite: &Suite) -> Vec<Squeezed> {
-    let read = |kind, half| estimates(suite, kind, half, |bins| bins.squeezed);
+    let read = |kind, half| estimates(suite, kind, half, |bins| bins.fnl);
     let row = |title, kind: Kind, values: &[f64], reference: f64, rho| Squeezed {
         title,
         mean: mean(values),
@@ -151,7 +154,7 @@ fn squeezed_rows(suite: &Suite) -> Vec<Squeezed> {
 
 fn squeezed_table(text: &mut String, suite: &Suite) {
     text.push_str(
-        "\nSqueezed signal: f_NL measured in each field; mean with its error, scatter per simulation\n",
+        "\nBispectrum: f_NL from all triangles of each field; mean with its error, scatter per simulation\n",
     );
     let _ =
         writeln!(text, "  {:<39}{:>9} {:>11}{:>12}{:>9}{:>9}", "", "mean", "error", "sigma", "worth", "rho");
@@ -169,10 +172,48 @@ fn squeezed_table(text: &mut String, suite: &Suite) {
     }
 }
 
+/// P_2 and P_4 over P_0 of the particles of the first seed: mean over the modes of each range.
+fn multipole_table(text: &mut String, suite: &Suite) {
+    let bins = suite.bins();
+    let ranges = ranges(&bins.k);
+    text.push_str(
+        "\nRedshift space: multipoles of the 2LPT particles of the first seed about the z axis, mean over modes\n",
+    );
+    let _ = writeln!(text, "  {:<32}{:>27}  {:>27}", "", "P_2 / P_0  ", "P_4 / P_0  ");
+    let mut line = |title: &str, value: &dyn Fn(usize, &Range<usize>) -> f64| {
+        let _ = write!(text, "  {title:<32}");
+        for (l, end) in [(1, "  "), (2, "\n")] {
+            for range in &ranges {
+                let _ = write!(text, "{:>9.3}", value(l, range));
+            }
+            text.push_str(end);
+        }
+    };
+    line("k [h/Mpc] up to", &|_, range| bins.k.get(range.end.max(1) - 1).copied().unwrap_or(0.0));
+    let mut ratios = |title: &str, multipoles: &Multipoles| {
+        line(title, &|l, range| {
+            let modes = |i: usize| bins.modes[i] as f64;
+            let sum: f64 = range.clone().map(|i| modes(i) * multipoles[l][i] / multipoles[0][i]).sum();
+            sum / range.clone().map(modes).sum::<f64>()
+        });
+    };
+    for half in [Half::Gaussian, Half::Local] {
+        for (amplitude, name) in [(Amplitude::Normal, "Normal"), (Amplitude::Fixed, "Fixed")] {
+            let variant = Variant { amplitude, phase: Phase::Original, half };
+            if let Some(multipoles) = &suite.get(0, variant).multipoles {
+                ratios(&format!("f_NL = {:<6} {name}", suite.configuration.fnl_of(half)), multipoles);
+            }
+        }
+    }
+    ratios("Kaiser 1987, on the same modes", &suite.configuration.linear_multipoles);
+}
+
 /// Name and content of each CSV file.
-pub(crate) fn tables(suite: &Suite) -> [(&'static str, String); 3] {
+pub(crate) fn tables(suite: &Suite) -> [(&'static str, String); 5] {
     [
         ("power.csv", power_csv(suite)),
+        ("bispectrum.csv", bispectrum_csv(suite)),
+        ("multipoles.csv", multipoles_csv(suite)),
         ("squeezed.csv", squeezed_csv(suite)),
         ("summary.csv", summary_csv(suite)),
     ]
@@ -202,10 +243,38 @@ fn power_csv(suite: &Suite) -> String {
     csv
 }
 
+fn bispectrum_csv(suite: &Suite) -> String {
+    let mut csv = String::from(
+        "seed,amplitude,phase,f_NL,k [h/Mpc],triples of modes,linear B for f_NL = 1 [(Mpc/h)^6],B [(Mpc/h)^6]\n",
+    );
+    for (place, variant, names) in each(suite) {
+        let slice = &suite.get(place, variant).squeezed;
+        for (i, value) in slice.value.iter().enumerate() {
+            let (k, count, template) = (slice.k[i], slice.count[i], slice.template[i]);
+            let _ = writeln!(csv, "{names},{k},{count},{template},{value}");
+        }
+    }
+    csv
+}
+
+fn multipoles_csv(suite: &Suite) -> String {
+    let mut csv = String::from(
+        "seed,amplitude,phase,f_NL,k [h/Mpc],modes,P_0 [(Mpc/h)^3],P_2 [(Mpc/h)^3],P_4 [(Mpc/h)^3]\n",
+    );
+    for (place, variant, names) in each(suite) {
+        let bins = suite.get(place, variant);
+        let Some([p0, p2, p4]) = &bins.multipoles else { continue };
+        for (i, (k, modes)) in bins.k.iter().zip(&bins.modes).enumerate() {
+            let _ = writeln!(csv, "{names},{k},{modes},{},{},{}", p0[i], p2[i], p4[i]);
+        }
+    }
+    csv
+}
+
 fn squeezed_csv(suite: &Suite) -> String {
     let mut csv = String::from("seed,amplitude,phase,f_NL,f_NL measured\n");
     for (place, variant, names) in each(suite) {
-        let _ = writeln!(csv, "{names},{}", suite.get(place, variant).squeezed);
+        let _ = writeln!(csv, "{names},{}", suite.get(place, variant).fnl);
     }
     csv
 }
@@ -213,7 +282,9 @@ fn squeezed_csv(suite: &Suite) -> String {
 /// Mean and scatter of each type, bin by bin, with sigma/sigma_th of matched differences.
 fn summary_csv(suite: &Suite) -> String {
     let bins = suite.bins();
-    let mut csv = String::from("quantity,type,f_NL,k [h/Mpc],modes,mean,standard deviation,sigma/sigma_th\n");
+    let mut csv = String::from(
+        "quantity,type,f_NL,k [h/Mpc],modes or triples,mean,standard deviation,sigma/sigma_th\n",
+    );
     for half in [Half::Gaussian, Half::Local] {
         let fnl = suite.configuration.fnl_of(half);
         for kind in Kind::ALL {
@@ -221,6 +292,17 @@ fn summary_csv(suite: &Suite) -> String {
             for (i, (k, modes)) in bins.k.iter().zip(&bins.modes).enumerate() {
                 let (mean, deviation, ratio) = (band.mean[i], band.deviation[i], band.ratio[i]);
                 let _ = writeln!(csv, "P,{},{fnl},{k},{modes},{mean},{deviation},{ratio}", kind.name());
+            }
+        }
+    }
+    let slice = &bins.squeezed;
+    for half in [Half::Gaussian, Half::Local] {
+        let fnl = suite.configuration.fnl_of(half);
+        for kind in Kind::ALL {
+            let band = squeezed_band(suite, kind, half);
+            for (i, (k, triples)) in slice.k.iter().zip(&slice.count).enumerate() {
+                let (mean, deviation, ratio) = (band.mean[i], band.deviation[i], band.ratio[i]);
+                let _ = writeln!(csv, "B,{},{fnl},{k},{triples},{mean},{deviation},{ratio}", kind.name());
             }
         }
     }

@@ -101,6 +101,13 @@ pub(crate) fn estimates(
         .collect()
 }
 
+/// Mean and scatter of the squeezed bispectrum of one type of simulation, triangle by triangle; its ratio is to sigma in a Gaussian field.
+pub(crate) fn squeezed_band(suite: &Suite, kind: Kind, half: Half) -> Band {
+    let sigma = &suite.bins().squeezed.sigma;
+    let column = |i: usize| estimates(suite, kind, half, |bins| bins.squeezed.value[i]);
+    Band::new(kind, (0..sigma.len()).map(column), sigma)
+}
+
 /// f_NL minus Gaussian: of the same seed (matched), or of one seed and the next (not matched).
 pub(crate) fn differences(local: &[f64], gaussian: &[f64], matched: bool) -> Vec<f64> {
     let shift = usize::from(!matched);
@@ -108,13 +115,24 @@ pub(crate) fn differences(local: &[f64], gaussian: &[f64], matched: bool) -> Vec
     local.iter().zip(partner).map(|(local, gaussian)| local - gaussian).collect()
 }
 
-/// Mean and scatter of the power spectrum, bin by bin.
+/// Mean and scatter of a spectrum, bin by bin.
 pub(crate) struct Band {
     pub(crate) mean: Vec<f64>,
-    /// Standard deviation of the estimates, (Mpc/h)^3.
+    /// Standard deviation of the estimates, in the unit of the spectrum.
     pub(crate) deviation: Vec<f64>,
     /// sigma/sigma_th per simulation.
     pub(crate) ratio: Vec<f64>,
+}
+
+impl Band {
+    fn new(kind: Kind, columns: impl Iterator<Item = Vec<f64>>, theory: &[f64]) -> Self {
+        let columns: Vec<_> = columns.collect();
+        Self {
+            mean: columns.iter().map(|column| mean(column)).collect(),
+            deviation: columns.iter().map(|column| deviation(column)).collect(),
+            ratio: columns.iter().zip(theory).map(|(column, theory)| kind.sigma(column) / theory).collect(),
+        }
+    }
 }
 
 /// sqrt(2/N_k) P for each bin.
@@ -122,16 +140,11 @@ pub(crate) fn sigma_theory(bins: &Measurement) -> Vec<f64> {
     bins.theory.iter().zip(&bins.modes).map(|(power, &modes)| power * (2.0 / modes as f64).sqrt()).collect()
 }
 
-/// The band of one type of simulation.
+/// The band of the power spectrum of one type of simulation.
 pub(crate) fn band(suite: &Suite, kind: Kind, half: Half) -> Band {
     let theory = sigma_theory(suite.bins());
-    let columns: Vec<_> =
-        (0..theory.len()).map(|i| estimates(suite, kind, half, |bins| bins.power[i])).collect();
-    Band {
-        mean: columns.iter().map(|column| mean(column)).collect(),
-        deviation: columns.iter().map(|column| deviation(column)).collect(),
-        ratio: columns.iter().zip(&theory).map(|(column, theory)| kind.sigma(column) / theory).collect(),
-    }
+    let column = |i: usize| estimates(suite, kind, half, |bins| bins.power[i]);
+    Band::new(kind, (0..theory.len()).map(column), &theory)
 }
 
 /// The scatter of P(f_NL) - P(0), bin by bin.
@@ -178,6 +191,7 @@ pub(crate) fn quadratic_mean(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bispectrum::Slice;
     use crate::suite::Configuration;
 
     /// Two bins; the power of seed s is 10 + d(s) with the sign of the phase on an odd part, halved if fixed.
@@ -194,12 +208,15 @@ mod tests {
                     modes: vec![8, 200],
                     theory: vec![10.0; 2],
                     power: vec![10.0 + size * draw + shift, 10.0 + sign * draw + shift],
-                    squeezed: shift * 25.0 + sign * draw,
+                    squeezed: Slice::default(),
+                    fnl: shift * 25.0 + sign * draw,
+                    multipoles: None,
                     slice: None,
                 });
             }
         }
-        let configuration = Configuration { size: 16, length: 1.0, fnl: 100.0 };
+        let configuration =
+            Configuration { size: 16, length: 1.0, fnl: 100.0, linear_multipoles: Default::default() };
         Suite::new(configuration, (1..=4).collect(), measurements).unwrap()
     }
 

@@ -5,7 +5,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::Failure;
 use crate::arguments::Arguments;
-use crate::measure::measure;
+use crate::bispectrum::{Slice, Triangles};
+use crate::measure::with_bench;
+use crate::redshift_space::{Multipoles, linear_multipoles};
 use crate::universe::Universe;
 
 /// The modulus of each mode: Rayleigh, or fixed to its r.m.s.
@@ -76,6 +78,8 @@ pub(crate) struct Configuration {
     pub(crate) length: f64,
     /// f_NL of the half that is not Gaussian (local, CMB convention).
     pub(crate) fnl: f64,
+    /// Linear theory of the multipoles in redshift space, averaged over the modes of each bin, (Mpc/h)^3.
+    pub(crate) linear_multipoles: Multipoles,
 }
 
 impl Configuration {
@@ -87,7 +91,8 @@ impl Configuration {
     }
 }
 
-/// What is measured in one initial condition at z = 32. The first three columns are the same for all variants.
+/// What is measured in one initial condition at z = 32. The first three columns, and all of `squeezed` but its values,
+/// are the same for all variants.
 #[derive(Clone, Debug)]
 pub(crate) struct Measurement {
     /// Mean wavenumber of each bin, h/Mpc, increasing.
@@ -98,8 +103,12 @@ pub(crate) struct Measurement {
     pub(crate) theory: Vec<f64>,
     /// Measured power, (Mpc/h)^3.
     pub(crate) power: Vec<f64>,
-    /// f_NL as estimated from the squeezed signal of this one field.
-    pub(crate) squeezed: f64,
+    /// The bispectrum of squeezed triangles.
+    pub(crate) squeezed: Slice,
+    /// f_NL from all triangles of this one field.
+    pub(crate) fnl: f64,
+    /// Multipoles of the particles in redshift space, (Mpc/h)^3, in the same bins; only where they were asked for.
+    pub(crate) multipoles: Option<Multipoles>,
     /// Density contrast in one plane of the mesh, `size` x `size`, x fastest; only where it was asked for.
     pub(crate) slice: Option<Vec<f32>>,
 }
@@ -141,8 +150,12 @@ impl Suite {
             if !positive || measurement.modes != first.modes || first.modes.contains(&0) {
                 return Err("a power spectrum has an empty bin or a value that is not positive".into());
             }
-            if !measurement.squeezed.is_finite() {
-                return Err("a squeezed signal is not a number".into());
+            let (squeezed, multipoles) = (&measurement.squeezed, measurement.multipoles.as_ref());
+            let columns = [&squeezed.k, &squeezed.template, &squeezed.sigma, &squeezed.value];
+            let whole = columns.iter().all(|column| column.len() == squeezed.count.len());
+            let mut rest = columns.into_iter().chain(multipoles.into_iter().flatten()).flatten();
+            if !whole || !measurement.fnl.is_finite() || rest.any(|value| !value.is_finite()) {
+                return Err("a bispectrum or a multipole is not a number".into());
             }
         }
         Ok(Self { configuration, seeds, measurements })
@@ -162,8 +175,10 @@ impl Suite {
     /// The first failure of a measurement.
     pub(crate) fn run(arguments: &Arguments, done: &(dyn Fn() + Sync)) -> Result<Self, Failure> {
         let Arguments { size, length, fnl, .. } = *arguments;
-        let configuration = Configuration { size, length, fnl };
         let universe = Universe::new(size, length)?;
+        let triangles = Triangles::new(&universe)?;
+        let configuration =
+            Configuration { size, length, fnl, linear_multipoles: linear_multipoles(&universe)? };
         let seeds: Vec<u64> = (1..).take(arguments.seeds).collect();
         let jobs = seeds.len() * Variant::COUNT;
         let next = AtomicUsize::new(0);
@@ -172,21 +187,22 @@ impl Suite {
         std::thread::scope(|scope| {
             for _ in 0..arguments.threads.min(jobs) {
                 scope.spawn(|| {
-                    loop {
-                        let job = next.fetch_add(1, Ordering::Relaxed);
-                        if job >= jobs {
-                            return;
-                        }
-                        let (seed, variant) = (job / Variant::COUNT, Variant::all()[job % Variant::COUNT]);
-                        match measure(&configuration, &universe, seeds[seed], variant, seed == 0) {
-                            Ok(measurement) => lock(&results)[job] = Some(measurement),
-                            Err(error) => {
-                                lock(&failure).get_or_insert(error);
-                                next.store(jobs, Ordering::Relaxed);
-                                return;
+                    let outcome = with_bench(&configuration, &universe, &triangles, |bench| {
+                        loop {
+                            let job = next.fetch_add(1, Ordering::Relaxed);
+                            if job >= jobs {
+                                return Ok(());
                             }
+                            let (seed, variant) =
+                                (job / Variant::COUNT, Variant::all()[job % Variant::COUNT]);
+                            let measurement = bench.measure(seeds[seed], variant, seed == 0)?;
+                            lock(&results)[job] = Some(measurement);
+                            done();
                         }
-                        done();
+                    });
+                    if let Err(error) = outcome {
+                        lock(&failure).get_or_insert(error);
+                        next.store(jobs, Ordering::Relaxed);
                     }
                 });
             }

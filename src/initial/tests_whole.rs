@@ -13,10 +13,16 @@ use crate::cosmology::{
     potential_amplitude_table,
 };
 use crate::estimate::binning::{Bin, Binning, read_sums};
+use crate::estimate::bispectrum::{
+    Triangle, bispectrum, bispectrum_meshes, bispectrum_scratch, bispectrum_values, closed_triangle_count,
+    closed_triangles,
+};
 use crate::estimate::compensation::Compensation;
+use crate::estimate::exact::ExactSum;
 use crate::estimate::power::{power_sums, power_sums_scratch};
 use crate::exec::{Exec, Serial, Threads};
-use crate::fft::Fft3;
+use crate::fft::{Fft3, Transform};
+use crate::mesh::Brick;
 use crate::noise::{Amplitude, Phase, Realisation};
 use crate::real::Real;
 use crate::reference::built::{memory, serial};
@@ -67,22 +73,27 @@ fn density<T: Real>(n: usize, realisation: Realisation, f_nl: f64) -> Vec<T> {
     out
 }
 
-/// Modes and sums of Re f_k g_k* in shells.
-fn shells<T: Real>(n: usize, f: &[T], g: &[T], edges: &[u64]) -> Vec<(u64, f64)> {
+/// A field whose modes are all real, with values by |n|^2.
+fn real_modes(n: usize, table: &[f64]) -> Vec<f64> {
+    let brick = *serial::<f64>(n).fourier();
+    let mut modes = vec![0.0; brick.reals()];
+    modes.iter_mut().step_by(2).for_each(|re| *re = 1.0);
+    scale_by_table(&mut modes, &brick, table, &Serial).unwrap();
+    modes
+}
+
+/// Modes and sums of |f_k|^2 in shells.
+fn bins<T: Real>(n: usize, modes: &[T], edges: &[u64]) -> Vec<(u64, f64)> {
     let brick = *serial::<T>(n).fourier();
     let binning = Binning::shells(edges);
     let mut sums = vec![0; binning.words(1).unwrap()];
     let scratch = memory(power_sums_scratch(&brick, &binning, 1).unwrap());
-    let none = [Compensation::None; 2];
-    power_sums(&mut sums, &[f, g], &[[0, 1]], &none, &brick, &binning, scratch, &Serial).unwrap();
+    let none = [Compensation::None];
+    power_sums(&mut sums, &[modes], &[[0, 0]], &none, &brick, &binning, scratch, &Serial).unwrap();
     let mut bins = vec![Bin::default(); binning.bins().unwrap()];
     let mut power = vec![0.0; bins.len()];
     read_sums(&mut bins, &mut power, &sums, &binning, 1).unwrap();
     bins.iter().zip(power).map(|(bin, power)| (bin.count, power)).collect()
-}
-
-fn bins<T: Real>(n: usize, modes: &[T], edges: &[u64]) -> Vec<(u64, f64)> {
-    shells(n, modes, modes, edges)
 }
 
 #[test]
@@ -91,12 +102,8 @@ fn fixed_field_has_exactly_the_input_power() {
     let (potential, alpha) = tables(n);
     let edges: Vec<u64> = (1..=16).map(|b| b * b).collect();
     // The input's mean over the modes of each bin, from the same sums over a field of its square roots.
-    let brick = *serial::<f64>(n).fourier();
-    let mut input = vec![0.0; brick.reals()];
-    input.iter_mut().step_by(2).for_each(|re| *re = 1.0);
     let root: Vec<f64> = potential.iter().zip(&alpha).map(|(p, a)| p * a).collect();
-    scale_by_table(&mut input, &brick, &root, &Serial).unwrap();
-    let expected = bins(n, &input, &edges);
+    let expected = bins(n, &real_modes(n, &root), &edges);
     for phase in [Phase::Original, Phase::Inverted] {
         let double = bins(n, &density::<f64>(n, realisation(3, Amplitude::Fixed, phase), 0.0), &edges);
         let single = bins(n, &density::<f32>(n, realisation(3, Amplitude::Fixed, phase), 0.0), &edges);
@@ -168,78 +175,85 @@ fn pairs_are_negatives_without_png_and_share_the_quadratic_term_with_it() {
     assert!(opposite(&flipped, &minus, 1e-15), "that would be f_NL -> -f_NL");
 }
 
-/// Skewness <W Phi^2> with each mode of W = Phi/P_Phi weighted by its inverse variance, over its expectation for f_NL = 1: a cubic
-/// estimator of f_NL that lives on squeezed triangles, W being dominated by small and Phi by large scales.
-struct Skewness {
-    n: usize,
-    inverse_power: Vec<f64>,
-    inverse_alpha: Vec<f64>,
-    expectation: f64,
+/// f_NL from the bispectrum of all closed triangles below the Nyquist wavenumber, each weighted by its inverse variance in a Gaussian field
+/// (Scoccimarro et al. 2004, astro-ph/0312286; Sefusatti, Crocce & Desjacques 2010, arXiv:1003.0007):
+///     f_NL = sum_t (N B T/(s P P P))_t / sum_t (N T^2/(s P P P))_t,
+/// T being B for f_NL = 1 and s = 1, 2, 6 for three, two and one different shells. The mesh of 3/2 the side closes triangles exactly.
+struct FromTriangles {
+    fft: Transform<'static, f64>,
+    coarse: Brick,
+    triangles: Vec<Triangle>,
+    fields: Vec<f64>,
+    scratch: &'static mut [u8],
+    /// N T, and T/(s P P P).
+    template: Vec<f64>,
+    weight: Vec<f64>,
 }
 
-impl Skewness {
+impl FromTriangles {
+    const EDGES: [u64; 11] = [1, 2, 3, 4, 5, 9, 16, 32, 64, 128, 256];
+
     fn new(n: usize) -> Self {
+        let (fft, shells) = (serial::<f64>(3 * n / 2), Self::EDGES.len() - 1);
+        let mut triangles = vec![[0; 3]; closed_triangle_count(&Self::EDGES, None).unwrap()];
+        closed_triangles(&mut triangles, &Self::EDGES, None).unwrap();
+        let mut this = Self {
+            coarse: *serial::<f64>(n).fourier(),
+            fields: vec![0.0; bispectrum_meshes(&fft, shells).unwrap()],
+            scratch: memory(bispectrum_scratch(&fft, shells, triangles.len()).unwrap()),
+            template: vec![],
+            weight: vec![],
+            fft,
+            triangles,
+        };
+        // B is cubic: of fields alpha (1 + p) and alpha (1 - p) the mean, less that of alpha, is alpha alpha alpha (p p + p p + p p).
         let (potential, alpha) = tables(n);
-        let invert = |values: &[f64]| values.iter().map(|&v| if v > 0.0 { 1.0 / v } else { 0.0 }).collect();
-        let power: Vec<f64> = potential.iter().map(|p| p * p).collect();
-        let mut this =
-            Self { n, inverse_power: invert(&power), inverse_alpha: invert(&alpha), expectation: 1.0 };
-        // <Phi_k* (Phi^2)_k> = f_NL [2 sum_q P_q P_(k-q) + 4 P_k sum_q P_q], q running over pairs whose sum the mesh holds: in the
-        // first sum k itself, in the second k + q. Both are convolutions.
-        let brick = *serial::<f64>(n).fourier();
-        let mut spectrum = vec![0.0; brick.reals()];
-        spectrum.iter_mut().step_by(2).for_each(|re| *re = 1.0);
-        scale_by_table(&mut spectrum, &brick, &power, &Serial).unwrap();
-        let mut ones = spectrum.clone();
-        scale_by_table(&mut ones, &brick, &this.inverse_power, &Serial).unwrap();
-        let mut inverse = ones.clone();
-        scale_by_table(&mut inverse, &brick, &this.inverse_power, &Serial).unwrap();
-        let (long, short) = (this.product(&spectrum, &ones), this.product(&spectrum, &spectrum));
-        this.expectation = 4.0 * inner(n, &long, &ones) + 2.0 * inner(n, &short, &inverse);
+        let unit = potential[n / 2] * potential[n / 2];
+        let [plus, minus, none] = [1.0, -1.0, 0.0].map(|sign| {
+            let table = potential.iter().zip(&alpha).map(|(p, alpha)| alpha * (1.0 + sign * p * p / unit));
+            this.sums(&real_modes(n, &table.collect::<Vec<f64>>()))
+        });
+        let counts = this.sums(&real_modes(n, &vec![1.0; alpha.len()]));
+        let root: Vec<f64> = potential.iter().zip(&alpha).map(|(p, a)| p * a).collect();
+        let shells = bins(n, &real_modes(n, &root), &Self::EDGES);
+        for (t, (&[i, j, k], &count)) in this.triangles.iter().zip(&counts).enumerate() {
+            let template = 2.0 * unit * unit * (0.5 * (plus[t] + minus[t]) - none[t]);
+            let power = [i, j, k].map(|s| shells[s as usize].1 / shells[s as usize].0 as f64);
+            let same = [1.0, 2.0, 6.0][usize::from(i == j) + usize::from(j == k)];
+            this.template.push(template);
+            this.weight.push(template / (same * count.max(1.0) * power.iter().product::<f64>()));
+        }
         this
     }
 
-    /// The modes of the product of two fields, free of aliasing.
-    fn product(&self, f: &[f64], g: &[f64]) -> Vec<f64> {
-        let (fft, mut fine) = (serial::<f64>(self.n), serial::<f64>(3 * self.n / 2));
-        let brick = *fine.fourier();
-        let [mut f, g] = [f, g].map(|modes| {
-            let mut mesh = vec![0.0; fine.length()];
-            copy_modes(&mut mesh, &brick, modes, fft.fourier(), &Serial).unwrap();
-            fine.inverse(&mut mesh).unwrap();
-            mesh
-        });
-        let m = brick.n() as f64;
-        f.iter_mut().zip(g).for_each(|(f, g)| *f *= g / (m * m * m));
-        fine.forward(&mut f).unwrap();
-        let mut out = vec![0.0; fft.length()];
-        copy_modes(&mut out, fft.fourier(), &f, &brick, &Serial).unwrap();
-        out
+    /// N B of each triangle.
+    fn sums(&mut self, modes: &[f64]) -> Vec<f64> {
+        let mut padded = vec![0.0; self.fft.length()];
+        copy_modes(&mut padded, self.fft.fourier(), modes, &self.coarse, &Serial).unwrap();
+        let mut sums = vec![ExactSum::ZERO; self.triangles.len()];
+        let Self { fft, triangles, fields, scratch, .. } = self;
+        bispectrum(&mut sums, triangles, &Self::EDGES, &padded, fft, fields, scratch, &Serial).unwrap();
+        let mut values = vec![0.0; sums.len()];
+        bispectrum_values(&mut values, &sums).unwrap();
+        values
     }
 
-    fn f_nl(&self, mut density: Vec<f64>) -> f64 {
-        let brick = *serial::<f64>(self.n).fourier();
-        scale_by_table(&mut density, &brick, &self.inverse_alpha, &Serial).unwrap();
-        let square = self.product(&density, &density);
-        scale_by_table(&mut density, &brick, &self.inverse_power, &Serial).unwrap();
-        inner(self.n, &density, &square) / self.expectation
+    fn f_nl(&mut self, density: &[f64]) -> f64 {
+        let sums = self.sums(density);
+        let weigh =
+            |sums: &[f64]| sums.iter().zip(&self.weight).map(|(sum, weight)| sum * weight).sum::<f64>();
+        weigh(&sums) / weigh(&self.template)
     }
-}
-
-/// sum_k Re f_k g_k* over all modes but the mean.
-fn inner(n: usize, f: &[f64], g: &[f64]) -> f64 {
-    let edges = [1, mode_table_length(n).unwrap() as u64];
-    shells(n, f, g, &edges)[0].1
 }
 
 #[test]
-fn skewness_of_the_potential_returns_the_input_f_nl() {
+fn bispectrum_of_the_density_returns_the_input_f_nl() {
     let n = 32;
-    let skewness = Skewness::new(n);
+    let mut estimator = FromTriangles::new(n);
     for amplitude in [Amplitude::Normal, Amplitude::Fixed] {
-        let measured = |f_nl: f64| -> Vec<f64> {
+        let mut measured = |f_nl: f64| -> Vec<f64> {
             (1..=40)
-                .map(|seed| skewness.f_nl(density(n, realisation(seed, amplitude, Phase::Original), f_nl)))
+                .map(|seed| estimator.f_nl(&density(n, realisation(seed, amplitude, Phase::Original), f_nl)))
                 .collect()
         };
         let (zero, hundred) = (measured(0.0), measured(100.0));

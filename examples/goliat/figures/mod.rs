@@ -1,14 +1,17 @@
 //! The figures, in the style of the paper's appendix: Normal in red, Fixed in blue, their inverted in magenta and
 //! cyan; a light shade is the scatter of one simulation, a dark one the error of the mean.
 
+mod bispectrum;
+mod multipoles;
 mod power;
 mod ratio;
 mod slice;
 mod squeezed;
 
 use crate::Failure;
-use crate::axes::{Axis, MARGIN_BOTTOM, MARGIN_LEFT};
-use crate::drawing::{Area, Colour, Drawing};
+use crate::axes::{Axes, Axis, Key, MARGIN_BOTTOM, MARGIN_LEFT};
+use crate::drawing::{Area, Colour, Drawing, Pen};
+use crate::statistics::{Band, Kind};
 use crate::suite::{Amplitude, Half, Suite};
 
 const NORMAL: Colour = Colour::new(214, 39, 40);
@@ -20,13 +23,15 @@ const GREY: Colour = Colour::new(110, 110, 110);
 /// File name without extension, and drawing, of each figure.
 ///
 /// # Errors
-/// If the suite lacks the slices of its first seed.
-pub(crate) fn all(suite: &Suite) -> Result<[(&'static str, Drawing); 4], Failure> {
+/// If the suite lacks the slices or multipoles of its first seed.
+pub(crate) fn all(suite: &Suite) -> Result<[(&'static str, Drawing); 6], Failure> {
     Ok([
         ("slice", slice::draw(suite)?),
         ("power", power::draw(suite)),
         ("ratio", ratio::draw(suite)),
         ("squeezed", squeezed::draw(suite)),
+        ("bispectrum", bispectrum::draw(suite)),
+        ("multipoles", multipoles::draw(suite)?),
     ])
 }
 
@@ -41,10 +46,25 @@ fn half_title(suite: &Suite, half: Half) -> String {
     format!("*f*_{{NL}} = {}", suite.configuration.fnl_of(half))
 }
 
+/// The line of each type where all four are compared.
+const fn pen(kind: Kind) -> Pen {
+    match kind {
+        Kind::Normal => Pen::solid(NORMAL, 1.8),
+        Kind::NormalPaired => Pen::dashed(NORMAL_PAIRED, 1.8),
+        Kind::Fixed => Pen::solid(FIXED, 1.8),
+        Kind::FixedPaired => Pen::dashed(FIXED_PAIRED, 1.8),
+    }
+}
+
 /// All of k with a little room at the ends.
 fn k_axis(suite: &Suite) -> Axis {
     let k = &suite.bins().k;
     Axis::logarithmic(0.85 * k[0], 1.15 * k[k.len() - 1])
+}
+
+/// Spectrum over theory, bin by bin.
+fn over(power: &[f64], theory: &[f64]) -> Vec<f64> {
+    power.iter().zip(theory).map(|(power, theory)| power / theory).collect()
 }
 
 const PANEL_WIDTH: f64 = 420.0;
@@ -64,4 +84,33 @@ fn columns<const ROWS: usize>(heights: [f64; ROWS]) -> (Drawing, [[Area; ROWS]; 
         })
     });
     (drawing, areas)
+}
+
+/// Lowest sigma/sigma_th of the figures.
+const FLOOR: f64 = 1e-6;
+
+/// Sigma/sigma_th of both halves, with room for a legend.
+fn scatter_axis(bands: &[[Band; 4]; 2]) -> Axis {
+    let ratios = bands.iter().flatten().flat_map(|band| &band.ratio);
+    let lowest = ratios.fold(0.1, |low: f64, &ratio| low.min(ratio.max(FLOOR)));
+    Axis::logarithmic(0.5 * lowest, 3.0 * lowest.powf(-0.4))
+}
+
+/// Sigma/sigma_th of the four types.
+fn draw_scatter(drawing: &mut Drawing, k: &[f64], axes: &Axes, bands: &[Band; 4], half: Half) {
+    let mut floored = false;
+    for (kind, band) in Kind::ALL.into_iter().zip(bands) {
+        floored |= band.ratio.iter().any(|&ratio| ratio < FLOOR);
+        let ratio: Vec<_> = band.ratio.iter().map(|ratio| ratio.max(FLOOR)).collect();
+        axes.line(drawing, k, &ratio, pen(kind));
+    }
+    axes.level(drawing, 1.0, Pen::dashed(Colour::BLACK, 1.0));
+    if floored {
+        axes.note(drawing, "at 10^{-6}: none but rounding", 0.09);
+    }
+    let first = half == Half::Gaussian;
+    // Half of the legend in each panel leaves room for the curves.
+    let kinds = if first { [Kind::Normal, Kind::NormalPaired] } else { [Kind::Fixed, Kind::FixedPaired] };
+    axes.legend(drawing, &kinds.map(|kind| (Key::Line(pen(kind)), kind.name())), [true, false]);
+    axes.frame(drawing, "*k*  [*h*/Mpc]", if first { "*σ* / *σ*_{th}  per simulation" } else { "" });
 }

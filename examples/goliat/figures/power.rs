@@ -1,6 +1,6 @@
 //! P(k) of every seed, the mean, and linear theory; below, the same over linear theory.
 
-use super::{GREY, Suite, colour, columns, half_title, k_axis};
+use super::{GREY, Suite, colour, columns, half_title, k_axis, over};
 use crate::axes::{Axes, Axis, Key};
 use crate::drawing::{Colour, Drawing, Pen};
 use crate::statistics::{Kind, band};
@@ -53,10 +53,6 @@ pub(super) fn draw(suite: &Suite) -> Drawing {
         ratio.frame(&mut drawing, "*k*  [*h*/Mpc]", label("*P* / *P*_{linear}"));
     }
     drawing
-}
-
-fn over(power: &[f64], theory: &[f64]) -> Vec<f64> {
-    power.iter().zip(theory).map(|(power, theory)| power / theory).collect()
 }
 
 /// One sigma_th above or below one.

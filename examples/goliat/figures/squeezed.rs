@@ -1,4 +1,4 @@
-//! f_NL from the squeezed signal: original against inverted seed by seed, and what each way of estimating it scatters.
+//! f_NL from the bispectrum: original against inverted seed by seed, and what each way of estimating it scatters.
 
 use super::{FIXED, FIXED_PAIRED, GREY, MARGIN_TOP, NORMAL, NORMAL_PAIRED, Suite, colour};
 use crate::axes::{Axes, Axis, Key, MARGIN_BOTTOM, MARGIN_LEFT};
@@ -37,7 +37,7 @@ fn holding(values: impl Iterator<Item = f64>, margin: f64) -> Axis {
 }
 
 fn draw_pairs(drawing: &mut Drawing, suite: &Suite, area: Area) {
-    let value = |seed, variant| suite.get(seed, variant).squeezed;
+    let value = |seed, variant| suite.get(seed, variant).fnl;
     let all = (0..suite.seeds.len()).flat_map(|seed| Variant::all().map(|variant| value(seed, variant)));
     let fnl = suite.configuration.fnl;
     let axis = holding(all.chain([0.0, fnl]), 0.08);
@@ -81,7 +81,7 @@ struct Strip {
 
 fn strips(suite: &Suite) -> Vec<Strip> {
     let fnl = suite.configuration.fnl;
-    let read = |kind, half| estimates(suite, kind, half, |bins| bins.squeezed);
+    let read = |kind, half| estimates(suite, kind, half, |bins| bins.fnl);
     let strip = |name: String, values: Vec<f64>, truth: f64, colour| Strip {
         name,
         errors: values.into_iter().map(|value| value - truth).collect(),
