@@ -160,7 +160,9 @@ impl<T: Real> Frame<T> {
     /// v of a position boxes away: its remainder by L is exact.
     fn wrap(&self, x: T) -> T {
         let side = self.side.to_f64();
-        let v = libm::fmod(x.to_f64(), self.box_size) * self.cells_per_length + self.lift;
+        let v = libm::fmod(x.to_f64(), self.box_size) * self.cells_per_length;
+        // First into the box: the lift may take a place near its lower edge out again.
+        let v = if v < 0.0 { v + side } else { v } + self.lift;
         let v = if v < 0.0 { v + side } else { v };
         let v = T::from_f64(if v >= side { v - side } else { v });
         // Rounding may reach the far edge, which is the near edge of the next box.

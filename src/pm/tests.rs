@@ -95,7 +95,7 @@ fn choices() -> impl Iterator<Item = (Window, f64)> {
 fn coordinates(n: usize) -> Vec<f64> {
     let side = n as f64;
     let mut all: Vec<f64> = (0..8 * n).map(|i| i as f64 / 8.0).collect();
-    all.extend([-1e-300, -1e-17, -0.25, side, side.next_down(), side + 0.375, -side, 3.0 * side + 0.5, 0.3]);
+    all.extend([-1e-300, -1e-17, -0.25, side, side.next_down(), side + 0.375, -side, 0.25 - side, 3.0 * side + 0.5, 0.3]);
     all
 }
 
