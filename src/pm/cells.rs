@@ -17,7 +17,7 @@ pub(super) struct Cells {
 
 /// A particle on its region: index of the first cell on each axis, and weights by number and axis.
 pub(super) struct Touched<T> {
-    first: [usize; 3],
+    pub(super) first: [usize; 3],
     weight: [[T; 4]; 4],
 }
 
@@ -44,11 +44,23 @@ impl Cells {
         Self { count: region.count(), stride: region.stride() }
     }
 
+    /// Last indices of first cells from which P x P rows of Q reals run over no edge; negative where rows do not have unit stride.
+    #[inline(always)]
+    pub(super) fn last_rows<const P: usize, const Q: usize>(&self) -> [i32; 3] {
+        let last = |axis: usize, reach: usize| self.count[axis] as i32 - reach as i32;
+        [last(0, P), last(1, P), if self.stride[2] == 1 { last(2, Q) } else { -1 }]
+    }
+
+    /// Offset of a cell.
+    #[inline(always)]
+    pub(super) fn start(&self, [x, y, z]: [usize; 3]) -> usize {
+        x * self.stride[0] + y * self.stride[1] + z * self.stride[2]
+    }
+
     /// Offsets of the first of the P x P rows of Q reals that a particle touches, if none of them runs over an edge and rows have unit
     /// stride; row (i, j) then begins i stride[0] + j stride[1] further.
     #[inline(always)]
-    pub(super) fn rows<T, const P: usize, const Q: usize>(&self, touched: &Touched<T>) -> Option<usize> {
-        let [x, y, z] = touched.first;
+    pub(super) fn rows<const P: usize, const Q: usize>(&self, [x, y, z]: [usize; 3]) -> Option<usize> {
         let inside = (x + P <= self.count[0]) & (y + P <= self.count[1]) & (z + Q <= self.count[2]);
         if inside & (self.stride[2] == 1) { Some(x * self.stride[0] + y * self.stride[1] + z) } else { None }
     }
@@ -78,10 +90,10 @@ impl Cells {
         [self.stride[0], self.stride[1]]
     }
 
-    /// Offset of cell (i, j, k) of those that a particle touches, in any layout and round any edge.
+    /// Offset of cell (i, j, k) after the first that a particle touches, in any layout and round any edge.
     #[inline(always)]
-    pub(super) fn offset<T>(&self, touched: &Touched<T>, cell: [usize; 3]) -> usize {
-        (0..3).map(|axis| (touched.first[axis] + cell[axis]) % self.count[axis] * self.stride[axis]).sum()
+    pub(super) fn offset(&self, first: [usize; 3], cell: [usize; 3]) -> usize {
+        (0..3).map(|axis| (first[axis] + cell[axis]) % self.count[axis] * self.stride[axis]).sum()
     }
 }
 
