@@ -78,7 +78,7 @@ impl Cells {
             for y in y.clone() {
                 let row = x * self.stride[0] + y * self.stride[1];
                 for line in 0..lines {
-                    prefetch(mesh.wrapping_add(row + line * per_line));
+                    prefetch::<T, false>(mesh.wrapping_add(row + line * per_line));
                 }
             }
         }
@@ -99,12 +99,18 @@ impl Cells {
 
 /// A hint, which changes nothing but time.
 #[inline(always)]
-fn prefetch<T>(address: *const T) {
+pub(super) fn prefetch<T, const FIRST_CACHE: bool>(address: *const T) {
     #[cfg(target_arch = "x86_64")]
     {
-        use core::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
+        use core::arch::x86_64::{_MM_HINT_T0, _MM_HINT_T1, _mm_prefetch};
         // SAFETY: prefetches of any address do no harm, and every x86-64 has the instruction.
-        unsafe { _mm_prefetch::<_MM_HINT_T1>(address.cast()) };
+        unsafe {
+            if FIRST_CACHE {
+                _mm_prefetch::<_MM_HINT_T0>(address.cast());
+            } else {
+                _mm_prefetch::<_MM_HINT_T1>(address.cast());
+            }
+        }
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = address;

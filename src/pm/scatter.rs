@@ -1,6 +1,6 @@
 //! Blocks of particles on their way to the cells: coordinates, weights and offsets of all of them by lanes, then row by row into the mesh.
 
-use super::cells::Cells;
+use super::cells::{Cells, prefetch};
 use super::frame::BLOCK;
 use super::window::spline;
 use crate::real::Real;
@@ -9,6 +9,9 @@ use crate::real::Real;
 /// vector while its last sum, one cell off, is still on its way to the cache stops the processor for that long.
 const TURNS: usize = 4;
 const STRETCH: usize = BLOCK / TURNS;
+
+/// Particles from asking for cells to adding to them.
+const AHEAD: usize = 8;
 
 /// In place of the offset of a particle whose rows run over an edge.
 const OVER: usize = usize::MAX;
@@ -41,10 +44,17 @@ impl<T: Real> Block<T> {
 
     /// Adds the particles to a mesh, with window order P; rows of Q >= P reals, the last ones with weight 0, make full vectors.
     ///
+    /// `ahead`: ask for the cells of particles ahead, which are likely to be far from those of the last ones.
+    ///
     /// # Safety
     /// Coordinates are in [0, n), also those past `count`, indices inside the mesh, and no other thread touches their cells now.
     #[inline(always)]
-    pub(super) unsafe fn add<const P: usize, const Q: usize>(&self, cells: &Cells, mesh: *mut T) {
+    pub(super) unsafe fn add<const P: usize, const Q: usize>(
+        &self,
+        cells: &Cells,
+        mesh: *mut T,
+        ahead: bool,
+    ) {
         let (mut along_x, mut along_y) = ([[T::ZERO; BLOCK]; P], [[T::ZERO; BLOCK]; P]);
         let mut along_z = [[T::ZERO; Q]; BLOCK];
         for i in 0..BLOCK {
@@ -55,9 +65,7 @@ impl<T: Real> Block<T> {
                 along_x[k][i] = self.mass[i] * x[k];
                 along_y[k][i] = y[k];
             }
-            for k in 0..Q {
-                along_z[i][k] = z[k];
-            }
+            along_z[i].copy_from_slice(&z[..Q]);
         }
         let mut start = [OVER; BLOCK];
         let last = cells.last_rows::<P, Q>();
@@ -67,10 +75,17 @@ impl<T: Real> Block<T> {
             start[i] = cells.start(self.first(i)) | usize::from(over).wrapping_neg();
         }
         let steps = cells.steps();
+        let at = |turn: usize| if self.count == BLOCK { turn % TURNS * STRETCH + turn / TURNS } else { turn };
         for turn in 0..BLOCK {
-            let i = if self.count == BLOCK { turn % TURNS * STRETCH + turn / TURNS } else { turn };
+            let i = at(turn);
             if i >= self.count {
                 break;
+            }
+            if ahead {
+                let later = mesh.wrapping_add(start[at((turn + AHEAD) % BLOCK)]);
+                for row in 0..P * P {
+                    prefetch::<T, true>(later.wrapping_add(row / P * steps[0] + row % P * steps[1]));
+                }
             }
             let x: [T; P] = core::array::from_fn(|k| along_x[k][i]);
             let y: [T; P] = core::array::from_fn(|k| along_y[k][i]);

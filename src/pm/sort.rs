@@ -346,6 +346,8 @@ impl<T: Real> Batch<'_, '_, T> {
         let mut wrong = 0;
         let (mut v, mut index) = ([[T::ZERO; BLOCK]; 3], [[0; BLOCK]; 3]);
         let mut fourth = [T::ONE; BLOCK];
+        // Whole records first: as one store each they wait for memory in shorter a queue than as four.
+        let mut packed = [[T::ZERO; 4]; BLOCK];
         for (b, keys) in keys.chunks(BLOCK).enumerate() {
             let at = self.begin + b * BLOCK;
             block(self.positions, self.first + at, keys.len(), frame, &mut v, &mut index);
@@ -358,10 +360,13 @@ impl<T: Real> Batch<'_, '_, T> {
                     wrong |= if finite { 0 } else { NOT_FINITE };
                 }
             }
-            for (i, &key) in keys.iter().enumerate() {
+            for i in 0..BLOCK {
+                packed[i] = [v[0][i], v[1][i], v[2][i], fourth[i]];
+            }
+            for (record, &key) in packed.iter().zip(keys) {
                 let place = &mut places[usize::from(key)];
                 // SAFETY: the first pass counted this particle for this tile and chunk, so the place is inside the batch and its own.
-                unsafe { records.part(*place as usize, 1)[0] = [v[0][i], v[1][i], v[2][i], fourth[i]] };
+                unsafe { records.part(*place as usize, 1)[0] = *record };
                 *place += 1;
             }
         }
