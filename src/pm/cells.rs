@@ -17,7 +17,7 @@ pub(super) struct Cells {
 
 /// A particle on its region: index of the first cell on each axis, and weights by number and axis.
 pub(super) struct Touched<T> {
-    first: [usize; 3],
+    pub(super) first: [usize; 3],
     weight: [[T; 4]; 4],
 }
 
@@ -44,11 +44,23 @@ impl Cells {
         Self { count: region.count(), stride: region.stride() }
     }
 
+    /// Last indices of first cells from which P x P rows of Q reals run over no edge; negative where rows do not have unit stride.
+    #[inline(always)]
+    pub(super) fn last_rows<const P: usize, const Q: usize>(&self) -> [i32; 3] {
+        let last = |axis: usize, reach: usize| self.count[axis] as i32 - reach as i32;
+        [last(0, P), last(1, P), if self.stride[2] == 1 { last(2, Q) } else { -1 }]
+    }
+
+    /// Offset of a cell.
+    #[inline(always)]
+    pub(super) fn start(&self, [x, y, z]: [usize; 3]) -> usize {
+        x * self.stride[0] + y * self.stride[1] + z * self.stride[2]
+    }
+
     /// Offsets of the first of the P x P rows of Q reals that a particle touches, if none of them runs over an edge and rows have unit
     /// stride; row (i, j) then begins i stride[0] + j stride[1] further.
     #[inline(always)]
-    pub(super) fn rows<T, const P: usize, const Q: usize>(&self, touched: &Touched<T>) -> Option<usize> {
-        let [x, y, z] = touched.first;
+    pub(super) fn rows<const P: usize, const Q: usize>(&self, [x, y, z]: [usize; 3]) -> Option<usize> {
         let inside = (x + P <= self.count[0]) & (y + P <= self.count[1]) & (z + Q <= self.count[2]);
         if inside & (self.stride[2] == 1) { Some(x * self.stride[0] + y * self.stride[1] + z) } else { None }
     }
@@ -66,7 +78,7 @@ impl Cells {
             for y in y.clone() {
                 let row = x * self.stride[0] + y * self.stride[1];
                 for line in 0..lines {
-                    prefetch(mesh.wrapping_add(row + line * per_line));
+                    prefetch::<T, false>(mesh.wrapping_add(row + line * per_line));
                 }
             }
         }
@@ -78,21 +90,27 @@ impl Cells {
         [self.stride[0], self.stride[1]]
     }
 
-    /// Offset of cell (i, j, k) of those that a particle touches, in any layout and round any edge.
+    /// Offset of cell (i, j, k) after the first that a particle touches, in any layout and round any edge.
     #[inline(always)]
-    pub(super) fn offset<T>(&self, touched: &Touched<T>, cell: [usize; 3]) -> usize {
-        (0..3).map(|axis| (touched.first[axis] + cell[axis]) % self.count[axis] * self.stride[axis]).sum()
+    pub(super) fn offset(&self, first: [usize; 3], cell: [usize; 3]) -> usize {
+        (0..3).map(|axis| (first[axis] + cell[axis]) % self.count[axis] * self.stride[axis]).sum()
     }
 }
 
 /// A hint, which changes nothing but time.
 #[inline(always)]
-fn prefetch<T>(address: *const T) {
+pub(super) fn prefetch<T, const FIRST_CACHE: bool>(address: *const T) {
     #[cfg(target_arch = "x86_64")]
     {
-        use core::arch::x86_64::{_MM_HINT_T1, _mm_prefetch};
+        use core::arch::x86_64::{_MM_HINT_T0, _MM_HINT_T1, _mm_prefetch};
         // SAFETY: prefetches of any address do no harm, and every x86-64 has the instruction.
-        unsafe { _mm_prefetch::<_MM_HINT_T1>(address.cast()) };
+        unsafe {
+            if FIRST_CACHE {
+                _mm_prefetch::<_MM_HINT_T0>(address.cast());
+            } else {
+                _mm_prefetch::<_MM_HINT_T1>(address.cast());
+            }
+        }
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = address;

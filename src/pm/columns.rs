@@ -67,12 +67,42 @@ impl<'a, T: Real> Positions<'a, T> {
         self.particles == 0
     }
 
+    /// Copies the coordinates of `count` consecutive particles to `to[axis][at ..]`.
+    ///
+    /// # Safety
+    /// `first + count` is at most [`Positions::len`], and `at + count` at most `N`.
+    #[inline(always)]
+    pub(super) unsafe fn load_all<const N: usize>(
+        &self,
+        first: usize,
+        count: usize,
+        at: usize,
+        to: &mut [[T; N]; 3],
+    ) {
+        let triples =
+            [0, 1, 2].map(|axis| self.start[0].wrapping_add(axis)) == self.start && self.stride == 3;
+        if triples && count == N {
+            // SAFETY: the particles exist (caller), their coordinates without a gap.
+            let from = unsafe { &*self.start[0].add(3 * first).cast::<[[T; 3]; N]>() };
+            for i in 0..N {
+                for axis in 0..3 {
+                    to[axis][i] = from[i][axis];
+                }
+            }
+        } else {
+            for axis in 0..3 {
+                // SAFETY: as the caller says.
+                unsafe { self.load(axis, first, count, &mut to[axis][at..]) };
+            }
+        }
+    }
+
     /// Copies one coordinate of `count` consecutive particles to the front of `to`.
     ///
     /// # Safety
     /// `first + count` is at most [`Positions::len`], and `count` at most the length of `to`.
     #[inline(always)]
-    pub(super) unsafe fn load(&self, axis: usize, first: usize, count: usize, to: &mut [T]) {
+    unsafe fn load(&self, axis: usize, first: usize, count: usize, to: &mut [T]) {
         let stride = self.stride;
         // SAFETY: the particles exist (caller).
         let start = unsafe { self.start[axis].add(first * stride) };

@@ -106,23 +106,41 @@ impl<T: Real> Frame<T> {
         if ahead < 0 { ahead + self.n } else { ahead }
     }
 
-    /// Turns one coordinate of a block of particles into v, and finds their first cells. Returns what is wrong with any of them.
+    /// Indices in the region of the first cells touched on an axis, of a block with coordinates v in [0, n).
+    #[inline(always)]
+    pub(super) fn index_all(&self, axis: usize, v: &[T; BLOCK], index: &mut [i32; BLOCK]) {
+        let (base, n) = (self.base[axis], self.n);
+        for i in 0..BLOCK {
+            debug_assert!(v[i] >= T::ZERO && v[i] < self.side);
+            // SAFETY: in [0, n), and n is an i32.
+            let ahead = unsafe { v[i].split() }.0 - base;
+            index[i] = if ahead < 0 { ahead + n } else { ahead };
+        }
+    }
+
+    /// v of a position in the box or not far from it, and whether it is one.
+    #[inline(always)]
+    fn near(&self, x: T) -> (T, bool) {
+        let raw = x * self.scale + self.add;
+        let raw = if raw < T::ZERO { raw + self.side } else { raw };
+        let wrapped = if raw >= self.side { raw - self.side } else { raw };
+        // A NaN fails the comparisons.
+        (wrapped, (wrapped >= T::ZERO) & (wrapped < self.side))
+    }
+
+    /// Turns one coordinate of a block of particles into v, and finds their first cells. Returns what is wrong with any of them. What becomes of a
+    /// particle does not depend on the others.
     #[inline(always)]
     pub(super) fn locate(&self, axis: usize, x: &mut [T; BLOCK], index: &mut [i32; BLOCK]) -> u32 {
         let mut astray = 0;
-        let (scale, add, side) = (self.scale, self.add, self.side);
         let (base, n, limit) = (self.base[axis], self.n, self.limit[axis]);
         let mut v = [T::ZERO; BLOCK];
         for i in 0..BLOCK {
-            let raw = x[i] * scale + add;
-            let raw = if raw < T::ZERO { raw + side } else { raw };
-            let wrapped = if raw >= side { raw - side } else { raw };
-            // A NaN fails the comparisons.
-            let inside = (wrapped >= T::ZERO) & (wrapped < side);
+            let (wrapped, inside) = self.near(x[i]);
             v[i] = if inside { wrapped } else { T::ZERO };
             // SAFETY: in [0, n), and n is an i32.
-            let cell = unsafe { v[i].split() }.0 - base;
-            index[i] = if cell < 0 { cell + n } else { cell };
+            let ahead = unsafe { v[i].split() }.0 - base;
+            index[i] = if ahead < 0 { ahead + n } else { ahead };
             astray |= u32::from(!inside) | u32::from(index[i] >= limit);
         }
         let mut wrong = 0;
@@ -133,7 +151,7 @@ impl<T: Real> Frame<T> {
         wrong
     }
 
-    /// As `locate`, one by one (v is 0 where it is not simply inside the box), for blocks with particles astray.
+    /// As `locate`, one by one, for blocks with particles astray.
     #[inline(never)]
     fn locate_each(&self, axis: usize, x: &[T; BLOCK], v: &mut [T; BLOCK], index: &mut [i32; BLOCK]) -> u32 {
         let mut wrong = 0;
@@ -142,7 +160,7 @@ impl<T: Real> Frame<T> {
                 wrong |= NOT_FINITE;
                 continue;
             }
-            if v[i] == T::ZERO {
+            if !self.near(x[i]).1 {
                 v[i] = self.wrap(x[i]);
             }
             index[i] = self.index(axis, v[i]);
@@ -160,7 +178,9 @@ impl<T: Real> Frame<T> {
     /// v of a position boxes away: its remainder by L is exact.
     fn wrap(&self, x: T) -> T {
         let side = self.side.to_f64();
-        let v = libm::fmod(x.to_f64(), self.box_size) * self.cells_per_length + self.lift;
+        let v = libm::fmod(x.to_f64(), self.box_size) * self.cells_per_length;
+        // First into the box: the lift may take a place near its lower edge out again.
+        let v = if v < 0.0 { v + side } else { v } + self.lift;
         let v = if v < 0.0 { v + side } else { v };
         let v = T::from_f64(if v >= side { v - side } else { v });
         // Rounding may reach the far edge, which is the near edge of the next box.

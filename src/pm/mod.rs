@@ -13,6 +13,7 @@ pub mod window;
 
 mod cells;
 mod frame;
+mod scatter;
 mod sort;
 mod tiles;
 

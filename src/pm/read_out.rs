@@ -11,7 +11,7 @@ use super::deposit::deposit_scratch;
 use super::frame::BLOCK;
 use super::frame::{Assignment, Frame};
 use super::region::Region;
-use super::sort::{self, BATCH, CHUNK, Fourth, Record, Sorter, block};
+use super::sort::{self, BATCH, CHUNK, Fourth, IN_ORDER, Record, Sorter, block};
 use super::tiles::Tiling;
 use super::window::Window;
 use crate::exec::Exec;
@@ -76,6 +76,7 @@ pub(super) fn read_out_with<T: Real>(
         let values = &*values;
         // SAFETY: chunks hold different particles, and each is handed over once.
         let put = |i: usize, value: T| unsafe { values.write(first + i, value) };
+        // A value does not depend on it: each is a sum of its own.
         if changes < count / IN_ORDER {
             exec.parallel_for(count.div_ceil(CHUNK), &|chunk| {
                 let numbers = chunk * CHUNK..count.min((chunk + 1) * CHUNK);
@@ -98,10 +99,6 @@ pub(super) fn read_out_with<T: Real>(
     }
     Ok(())
 }
-
-/// Particles that change tile no more than once in so many are near enough to some order that sorting them gains nothing. A value does not depend
-/// on it: each is a sum of its own.
-const IN_ORDER: usize = 8;
 
 /// The mesh that is read.
 struct Source<'a, T> {
@@ -161,7 +158,7 @@ impl<T: Real> Source<'_, T> {
             let touched = unsafe { Touched::new::<P>(self.frame, record) };
             let [wx, wy, wz] = [0, 1, 2].map(|axis| touched.along(axis));
             let mut sum = [T::ZERO; Q];
-            if let Some(base) = self.cells.rows::<T, P, Q>(&touched) {
+            if let Some(base) = self.cells.rows::<P, Q>(touched.first) {
                 let [x_step, y_step] = self.cells.steps();
                 for i in 0..P {
                     for j in 0..P {
@@ -180,7 +177,7 @@ impl<T: Real> Source<'_, T> {
                     for j in 0..P {
                         let weight = wx[i] * wy[j];
                         for k in 0..P {
-                            sum[k] += weight * self.mesh[self.cells.offset(&touched, [i, j, k])];
+                            sum[k] += weight * self.mesh[self.cells.offset(touched.first, [i, j, k])];
                         }
                     }
                 }

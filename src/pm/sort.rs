@@ -20,6 +20,12 @@ pub(super) const BATCH: usize = 1 << 21;
 /// Particles that one chunk counts and writes.
 pub(super) const CHUNK: usize = 1 << 15;
 
+/// Particles that change tile no more than once in so many are near enough to some order that copying them to a better one gains nothing.
+pub(super) const IN_ORDER: usize = 8;
+
+/// Consecutive particles in one tile: the first one's number in the batch, and how many they are.
+pub(super) type Run = [u32; 2];
+
 /// Three coordinates v, and a fourth number.
 pub(super) type Record<T> = [T; 4];
 
@@ -36,13 +42,24 @@ pub(super) enum Fourth<'a, T> {
 pub(super) fn layout<T: Real>(particles: usize, tiles: usize) -> Result<Layout> {
     let batch = particles.min(BATCH);
     let counters = batch.div_ceil(CHUNK).checked_mul(tiles).ok_or(Error::Overflow)?;
-    Layout::EMPTY.and::<Record<T>>(batch)?.and::<u16>(batch)?.and::<u32>(counters)?.and::<u32>(tiles + 1)
+    Layout::EMPTY
+        .and::<Record<T>>(batch)?
+        .and::<u16>(batch)?
+        .and::<Run>(runs(batch))?
+        .and::<u32>(counters)?
+        .and::<u32>(tiles + 1)
+}
+
+/// Runs of a batch in order, at most: chunks begin with a new one.
+fn runs(batch: usize) -> usize {
+    batch / IN_ORDER + batch.div_ceil(CHUNK)
 }
 
 /// Memory for one batch.
 pub(super) struct Sorter<'a, T> {
     records: &'a mut [Record<T>],
     keys: &'a mut [u16],
+    runs: &'a mut [Run],
     counters: &'a mut [u32],
     starts: &'a mut [u32],
 }
@@ -53,6 +70,7 @@ impl<'a, T: Real> Sorter<'a, T> {
         Ok(Self {
             records: arena.take(batch)?,
             keys: arena.take(batch)?,
+            runs: arena.take(runs(batch))?,
             counters: arena.take(batch.div_ceil(CHUNK) * tiles)?,
             starts: arena.take(tiles + 1)?,
         })
@@ -61,6 +79,11 @@ impl<'a, T: Real> Sorter<'a, T> {
     /// Particles of a tile of the sorted batch.
     pub(super) fn tile(&self, tile: usize) -> &[Record<T>] {
         &self.records[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+    }
+
+    /// Runs of a tile of the batch.
+    pub(super) fn runs(&self, tile: usize) -> &[Run] {
+        &self.runs[self.starts[tile] as usize..self.starts[tile + 1] as usize]
     }
 
     /// Hands the particles of each tile to `change`.
@@ -125,16 +148,53 @@ impl<'a, T: Real> Sorter<'a, T> {
             let length = CHUNK.min(count - begin);
             // SAFETY: chunks have keys and counters of their own, inside the slices.
             let (keys, counters) = unsafe { (keys.part(begin, length), counters.part(chunk * tiles, tiles)) };
-            let flags = simd.vectorise(
+            let (flags, changed) = simd.vectorise(
                 #[inline(always)]
-                || count_tiles(positions, first + begin, frame, tiling, keys, counters),
+                || {
+                    let flags = count_tiles(positions, first + begin, frame, tiling, keys, counters);
+                    // No more than a chunk has particles, so 16 bits do, and are faster.
+                    let changed: u16 = keys.iter().zip(&keys[1..]).map(|(a, b)| u16::from(a != b)).sum();
+                    (flags, changed)
+                },
             );
             wrong.fetch_or(flags, Ordering::Relaxed);
-            let changed = keys.windows(2).map(|pair| usize::from(pair[0] != pair[1])).sum();
-            changes.fetch_add(changed, Ordering::Relaxed);
+            changes.fetch_add(usize::from(changed), Ordering::Relaxed);
         })?;
         check(&wrong)?;
         Ok(changes.into_inner())
+    }
+
+    /// Second half for particles in order, which change tile less often than once in [`IN_ORDER`]: writes their runs to their places, and not
+    /// the particles. The order in each tile is that of `write`.
+    pub(super) fn write_runs(&mut self, count: usize, exec: &dyn Exec) -> Result<()> {
+        let tiles = self.starts.len() - 1;
+        let chunks = count.div_ceil(CHUNK);
+        let keys = &self.keys[..count];
+        let chunk_keys = |chunk: usize| &keys[chunk * CHUNK..count.min((chunk + 1) * CHUNK)];
+        {
+            let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+            exec.parallel_for(chunks, &|chunk| {
+                // SAFETY: chunks have counters of their own, inside the slice.
+                let counters = unsafe { counters.part(chunk * tiles, tiles) };
+                counters.fill(0);
+                each_run(chunk_keys(chunk), |key, _| counters[usize::from(key)] += 1);
+            })?;
+        }
+        sum(&mut self.counters[..chunks * tiles], self.starts);
+        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        let runs = Shared::new(&mut *self.runs);
+        exec.parallel_for(chunks, &|chunk| {
+            // SAFETY: chunks have counters of their own, inside the slice.
+            let places = unsafe { counters.part(chunk * tiles, tiles) };
+            let mut begin = chunk * CHUNK;
+            each_run(chunk_keys(chunk), |key, length| {
+                let place = &mut places[usize::from(key)];
+                // SAFETY: this run was counted for this tile and chunk, so the place is its own; runs of particles in order are no more than fit.
+                unsafe { runs.part(*place as usize, 1)[0] = [begin as u32, length as u32] };
+                *place += 1;
+                begin += length;
+            });
+        })
     }
 
     /// Second half: writes the particles that were counted to their places. `NotFinite` for a weight.
@@ -172,7 +232,21 @@ impl<'a, T: Real> Sorter<'a, T> {
     }
 }
 
-fn check(wrong: &AtomicU32) -> Result<()> {
+/// Hands over the stretches of equal keys and their lengths.
+#[inline(always)]
+fn each_run(mut keys: &[u16], mut take: impl FnMut(u16, usize)) {
+    const STEP: usize = 16;
+    while let Some(&key) = keys.first() {
+        let (steps, _) = keys.as_chunks::<STEP>();
+        let whole = |step: &&[u16; STEP]| step.iter().fold(true, |same, &other| same & (other == key));
+        let length = STEP * steps.iter().take_while(whole).count();
+        let rest = keys[length..].iter().take_while(|&&other| other == key).count();
+        take(key, length + rest);
+        keys = &keys[length + rest..];
+    }
+}
+
+pub(super) fn check(wrong: &AtomicU32) -> Result<()> {
     match wrong.load(Ordering::Relaxed) {
         0 => Ok(()),
         OUTSIDE => Err(Error::Outside),
@@ -204,10 +278,10 @@ pub(super) fn block<T: Real>(
     index: &mut [[i32; BLOCK]; 3],
 ) -> u32 {
     let mut wrong = 0;
+    debug_assert!(first + count <= positions.len() && count <= BLOCK);
+    // SAFETY: the block lies inside the particles, and is no longer than the arrays.
+    unsafe { positions.load_all(first, count, 0, v) };
     for axis in 0..3 {
-        debug_assert!(first + count <= positions.len() && count <= BLOCK);
-        // SAFETY: the block lies inside the particles, and is no longer than the array.
-        unsafe { positions.load(axis, first, count, &mut v[axis]) };
         if count < BLOCK {
             let repeated = v[axis][0];
             v[axis][count..].fill(repeated);
@@ -238,8 +312,13 @@ fn count_tiles<T: Real>(
         }
         keys.copy_from_slice(&key[..keys.len()]);
         if wrong == 0 {
-            for &key in &*keys {
-                counters[usize::from(key)] += 1;
+            // One by one each count would wait for the last, where neighbours share a tile.
+            if key.iter().fold(true, |same, &other| same & (other == key[0])) {
+                counters[usize::from(key[0])] += keys.len() as u32;
+            } else {
+                for &key in &*keys {
+                    counters[usize::from(key)] += 1;
+                }
             }
         }
     }
@@ -267,6 +346,8 @@ impl<T: Real> Batch<'_, '_, T> {
         let mut wrong = 0;
         let (mut v, mut index) = ([[T::ZERO; BLOCK]; 3], [[0; BLOCK]; 3]);
         let mut fourth = [T::ONE; BLOCK];
+        // Whole records first: as one store each they wait for memory in shorter a queue than as four.
+        let mut packed = [[T::ZERO; 4]; BLOCK];
         for (b, keys) in keys.chunks(BLOCK).enumerate() {
             let at = self.begin + b * BLOCK;
             block(self.positions, self.first + at, keys.len(), frame, &mut v, &mut index);
@@ -279,10 +360,13 @@ impl<T: Real> Batch<'_, '_, T> {
                     wrong |= if finite { 0 } else { NOT_FINITE };
                 }
             }
-            for (i, &key) in keys.iter().enumerate() {
+            for i in 0..BLOCK {
+                packed[i] = [v[0][i], v[1][i], v[2][i], fourth[i]];
+            }
+            for (record, &key) in packed.iter().zip(keys) {
                 let place = &mut places[usize::from(key)];
                 // SAFETY: the first pass counted this particle for this tile and chunk, so the place is inside the batch and its own.
-                unsafe { records.part(*place as usize, 1)[0] = [v[0][i], v[1][i], v[2][i], fourth[i]] };
+                unsafe { records.part(*place as usize, 1)[0] = *record };
                 *place += 1;
             }
         }

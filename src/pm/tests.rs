@@ -95,7 +95,18 @@ fn choices() -> impl Iterator<Item = (Window, f64)> {
 fn coordinates(n: usize) -> Vec<f64> {
     let side = n as f64;
     let mut all: Vec<f64> = (0..8 * n).map(|i| i as f64 / 8.0).collect();
-    all.extend([-1e-300, -1e-17, -0.25, side, side.next_down(), side + 0.375, -side, 3.0 * side + 0.5, 0.3]);
+    all.extend([
+        -1e-300,
+        -1e-17,
+        -0.25,
+        side,
+        side.next_down(),
+        side + 0.375,
+        -side,
+        0.25 - side,
+        3.0 * side + 0.5,
+        0.3,
+    ]);
     all
 }
 
@@ -341,6 +352,32 @@ fn batches_join_without_a_seam() {
     let values = get(&region, &mesh, &triples, &assignment, &pool).unwrap();
     for (i, value) in values.iter().enumerate() {
         assert_eq!(*value, (particles - i % 512).div_ceil(512) as f32);
+    }
+}
+
+#[test]
+fn particles_in_runs_and_sorted_give_the_same_bits() {
+    // The same order in each of two tiles, one after the other or by turns: a run each, or none.
+    let n = 32;
+    let region = region_of(n);
+    let places: Vec<f64> = random(3 * 1501, 9).iter().map(|x| 7.0 * x).collect();
+    let near: Vec<[f64; 4]> =
+        places.chunks(3).map(|p| [p[0] + 0.2, p[1] + 0.3, 4.4 * p[2], p[0] - 2.0]).collect();
+    let far: Vec<[f64; 4]> = near.iter().map(|p| [p[0] + 16.0, p[1], p[2] - 20.0, p[3]]).collect();
+    let runs: Vec<[f64; 4]> = near.iter().chain(&far).copied().collect();
+    let turns: Vec<[f64; 4]> = near.iter().zip(&far).flat_map(|(a, b)| [*a, *b]).collect();
+    for (window, shift) in choices() {
+        let assignment = cells(n, window, shift);
+        let [runs, turns] = [&runs, &turns].map(|particles| {
+            let triples: Vec<f64> = particles.iter().flat_map(|p| [p[0], p[1], p[2]]).collect();
+            let masses: Vec<f64> = particles.iter().map(|p| p[3]).collect();
+            let mut bad = masses.clone();
+            bad[1700] = f64::INFINITY;
+            let refused = put(&region, &triples, Some(&bad), &assignment, &Serial);
+            assert_eq!(refused.err(), Some(Error::NotFinite));
+            put(&region, &triples, Some(&masses), &assignment, &Serial).unwrap()
+        });
+        assert!(bits(&runs) == bits(&turns), "{window:?} {shift}");
     }
 }
 
@@ -603,7 +640,11 @@ fn what_cannot_be_placed_is_refused() {
 fn scratch_does_not_grow_with_particles() {
     let region = region_of(256);
     let most = deposit_scratch::<f32>(&region, 1 << 40, Window::CloudInCell).unwrap();
-    assert_eq!(most.size, (16 + 2) * sort::BATCH + 4 * 1024 * 64 + (4 * 1025_usize).next_multiple_of(64));
+    let runs = 8 * (sort::BATCH / 8 + 64);
+    assert_eq!(
+        most.size,
+        (16 + 2) * sort::BATCH + runs + 4 * 1024 * 64 + (4 * 1025_usize).next_multiple_of(64)
+    );
     assert!(most.size < 39 << 20);
     let few = deposit_scratch::<f64>(&region, 1, Window::CloudInCell).unwrap();
     assert!(few.size < 16 << 10);

@@ -63,34 +63,34 @@ impl TryFrom<i32> for Window {
     }
 }
 
-/// Weights of a particle at fractions 0 <= f < 1 on four axes: the P weights of each, weight by weight, then zeros.
+/// The P weights of a particle at fraction 0 <= f < 1 of an axis, then zeros.
+#[inline(always)]
+pub(super) fn spline<T: Real, const P: usize>(f: T) -> [T; 4] {
+    let half = T::from_f64(0.5);
+    let (sixth, two_thirds) = (T::from_f64(1.0 / 6.0), T::from_f64(2.0 / 3.0));
+    let g = T::ONE - f;
+    let (ff, gg) = (f * f, g * g);
+    match P {
+        1 => [T::ONE, T::ZERO, T::ZERO, T::ZERO],
+        2 => [g, f, T::ZERO, T::ZERO],
+        3 => [half * gg, half + f * g, half * ff, T::ZERO],
+        _ => [
+            sixth * (gg * g),
+            two_thirds - half * (ff * (T::ONE + g)),
+            two_thirds - half * (gg * (T::ONE + f)),
+            sixth * (ff * f),
+        ],
+    }
+}
+
+/// [`spline`] on four axes: weight by weight.
 #[inline(always)]
 pub(super) fn weights<T: Real, const P: usize>(f: &[T; 4]) -> [[T; 4]; 4] {
     let mut weights = [[T::ZERO; 4]; 4];
-    let half = T::from_f64(0.5);
-    let (sixth, two_thirds) = (T::from_f64(1.0 / 6.0), T::from_f64(2.0 / 3.0));
     for axis in 0..4 {
-        let f = f[axis];
-        let g = T::ONE - f;
-        let mut put = |k: usize, weight: T| weights[k][axis] = weight;
-        match P {
-            1 => put(0, T::ONE),
-            2 => {
-                put(0, g);
-                put(1, f);
-            }
-            3 => {
-                put(0, half * (g * g));
-                put(1, half + f * g);
-                put(2, half * (f * f));
-            }
-            _ => {
-                let (ff, gg) = (f * f, g * g);
-                put(0, sixth * (gg * g));
-                put(1, two_thirds - half * (ff * (T::ONE + g)));
-                put(2, two_thirds - half * (gg * (T::ONE + f)));
-                put(3, sixth * (ff * f));
-            }
+        let along = spline::<T, P>(f[axis]);
+        for k in 0..4 {
+            weights[k][axis] = along[k];
         }
     }
     weights
