@@ -1,104 +1,30 @@
-"""Runs Pylians3 and pySpectrum beside fixpair's conventions on the same fields, and asserts what docs/comparing-spectra.md says.
+"""Runs Pylians3 and pySpectrum beside fixpair on the same fields, and asserts what docs/comparing-spectra.md says.
 
-    python check_conventions.py
+    python check_conventions.py [--library PATH]
 
-Needs Pylians; what concerns pySpectrum is left out, with a line that says so, where it cannot be imported. Each printed
-line is a claim of the page with the number measured. A failed claim raises.
-
-The oracle below is fixpair's conventions in numpy, with every mode of the full mesh spelt out:
-delta(k) = FFT(delta) / N^3; shells edge[b] <= |n|^2 < edge[b+1] of integers |n|^2 = (k L / 2 pi)^2; counts of +k and -k;
-P = V sum |delta|^2 / modes; B = V^2 sum delta(k1) delta(k2) delta(k3) / triangles over ordered triples, k1 + k2 + k3 = 0.
+Compares both with fixpair's conventions written out in numpy (conventions.py); with --library also with the shared library
+(check_library.py), which `cargo rustc --release --lib --crate-type cdylib` makes: target/release/libfixpair.so. Needs
+Pylians; what concerns pySpectrum is left out, with a line that says so, where it cannot be imported. Each printed line is a
+claim of the page with the number measured. A failed claim raises.
 """
 
-import contextlib
-import io
+import argparse
 import itertools
 import math
 import os
-import sys
 import tempfile
-import types
 
 import MAS_library as MASL
 import numpy as np
 import Pk_library as PKL
 
-BOX = 1000.0  # Mpc/h
-N = 64
-
-# ---------------------------------------------------------------------------------------------- fixpair's conventions
-
-
-class Modes:
-    """delta(k) of a real mesh, all N^3 modes, with the integers n = k L / 2 pi."""
-
-    def __init__(self, delta, window=0):
-        n = delta.shape[0]
-        one = np.rint(np.fft.fftfreq(n) * n).astype(np.int64)
-        self.n = np.meshgrid(one, one, one, indexing="ij", sparse=True)
-        self.n2 = sum(a * a for a in self.n)
-        self.delta = np.fft.fftn(delta.astype(np.float64)) / n**3
-        for a in self.n:
-            self.delta = self.delta / np.sinc(a / n) ** window  # numpy's sinc(x) is sin(pi x) / (pi x)
-
-    def shell(self, low, high):
-        return (self.n2 >= low) & (self.n2 < high)
-
-    def power(self, shell, volume, axis=2):
-        """Modes, mean |n|, and P_0, P_2, P_4 = (2 l + 1) V <|delta|^2 L_l(mu)>."""
-        square = np.abs(self.delta[shell]) ** 2
-        mu2 = np.broadcast_to(self.n[axis] ** 2, self.n2.shape)[shell] / np.maximum(self.n2[shell], 1)
-        legendre = 1.0, 5.0 * (3 * mu2 - 1) / 2, 9.0 * (35 * mu2**2 - 30 * mu2 + 3) / 8
-        return shell.sum(), np.sqrt(self.n2[shell]).mean(), [volume * (square * l).mean() for l in legendre]
-
-    def triples(self, *shells):
-        """(number of ordered closed triples, sum of delta delta delta over them)."""
-        cells = self.n2.size
-        fields = [np.fft.ifftn(np.where(s, self.delta, 0.0)).real * cells for s in shells]
-        ones = [np.fft.ifftn(s.astype(float)).real * cells for s in shells]
-        count = math.prod(ones).sum() / cells
-        assert abs(count - np.rint(count)) < 1e-3, "a count is an integer"
-        return int(np.rint(count)), math.prod(fields).sum() / cells
-
-
-# -------------------------------------------------------------------------------------------------------------- tools
+from conventions import (
+    BOX, N, SHELLS, STEP, TRIANGLES, Modes, import_pyspectrum, pylians_shells, pyspectrum_edge, quiet, second_field, skewed_field, worst)
 
 
 def claim(text, measured, limit):
     print(f"{text}: {measured:.1e} (limit {limit:.0e})")
     assert measured <= limit, text
-
-
-def quiet(call, *arguments):
-    with contextlib.redirect_stdout(io.StringIO()):
-        return call(*arguments)
-
-
-def skewed_field(n):
-    """A field with a bispectrum far above its noise, and power that falls with k."""
-    gauss = np.random.default_rng(5).standard_normal((n, n, n))
-    modes = Modes(gauss)
-    gauss = np.fft.ifftn(modes.delta * n**3 * np.exp(-modes.n2 / (0.3 * n) ** 2)).real
-    gauss /= gauss.std()
-    field = np.exp(gauss)
-    return (field / field.mean() - 1.0).astype(np.float32)
-
-
-def worst(a, b):
-    return max(abs(x / y - 1.0) for x, y in zip(a, b, strict=True))
-
-
-def pylians_edge(x):
-    """The smallest integer |n|^2 with sqrt(|n|^2) >= x in f64: where Pylians's `k >= k_min` begins."""
-    m = max(0, math.floor(x * x) - 1)
-    while math.sqrt(m) < x:
-        m += 1
-    return m
-
-
-def pyspectrum_edge(i, step):
-    """The smallest integer |n|^2 in shell i = floor(|n| / step + 1/2): ceil(step^2 (2 i - 1)^2 / 4)."""
-    return -((-(step**2) * (2 * i - 1) ** 2) // 4)
 
 
 # ------------------------------------------------------------------------------------------------------------ Pylians
@@ -120,7 +46,7 @@ def pylians_power():
                 multipoles = max(multipoles, *(abs(theirs.Pk[b - 1, l] - p[l]) / p[0] for l in (1, 2)))
             else:
                 # n = -n modulo N: all components 0 or N/2. Pylians gives such a mode the weight of a pair.
-                own = shell & math.prod((a % (N // 2) == 0) for a in modes.n).astype(bool)
+                own = shell & modes.own_conjugates()
                 weighted = number * p[0] + BOX**3 * (np.abs(modes.delta[own]) ** 2).sum()
                 ratio = max(ratio, abs(theirs.Pk[b - 1, 0] * (number + own.sum()) / weighted - 1.0))
                 counts = max(counts, abs(number + own.sum() - 2 * theirs.Nmodes3D[b - 1]))
@@ -128,9 +54,7 @@ def pylians_power():
         claim(f"Pylians P(k), MAS {name}: P_0 over fixpair's, less 1", ratio, 1e-5)
         claim(f"Pylians P(k), MAS {name}: mean k over fixpair's, less 1", k, 1e-12)
         claim(f"Pylians P(k), MAS {name}: P_2 and P_4 less fixpair's, over P_0", multipoles, 1e-5)
-    other = Modes(skewed_field(N)[::-1].copy())
-    other.delta = other.delta + 0.5 * Modes(field).delta
-    mixed = np.fft.ifftn(other.delta * N**3).real.astype(np.float32)
+    mixed = second_field(N)
     modes, other = Modes(field, 2), Modes(mixed, 3)
     cross = quiet(PKL.XPk, [field, mixed], BOX, 2, ["CIC", "TSC"], 1)
     difference = 0.0
@@ -194,12 +118,10 @@ def pylians_bispectrum():
     field = skewed_field(N)
     modes = Modes(field, 2)
     fundamental = 2.0 * np.pi / BOX
-    # The sum of the three upper edges, in k_f, stays below N: no triple wraps round the mesh.
-    for n1, n2, turn in (5, 5, 2 / 3), (9, 12, 0.5), (7, 7, 0.25), (3, 12, 0.6), (1, 1, 2 / 3):
+    for n1, n2, turn in TRIANGLES:
         angle = np.array([turn * np.pi])
         theirs = quiet(PKL.Bk, field, BOX, n1 * fundamental, n2 * fundamental, angle, "CIC", 1)
-        ends = [((k - fundamental) / fundamental, (k + fundamental) / fundamental) for k in theirs.k]
-        edges = [(pylians_edge(low), pylians_edge(high)) for low, high in ends]
+        edges = pylians_shells(theirs.k)
         shells = [modes.shell(*e) for e in edges]
         count, total = modes.triples(*shells)
         triangles = theirs.triangles[0] * float(N) ** 6
@@ -224,7 +146,7 @@ def pylians_bispectrum():
 
 
 def pyspectrum_bispectrum(pyspectrum):
-    step, shells = 3, 6  # three upper edges: 3 * 6.5 * 3 = 58.5 < N
+    step, shells = STEP, SHELLS  # three upper edges: 3 * 6.5 * 3 = 58.5 < N
     field = skewed_field(N)
     modes = Modes(field)
     with tempfile.TemporaryDirectory() as folder:
@@ -287,23 +209,28 @@ def pyspectrum_power(pyspectrum):
 
 
 def main():
+    parser = argparse.ArgumentParser(description="Asserts what docs/comparing-spectra.md says.")
+    parser.add_argument("--library", metavar="PATH", help="fixpair's shared library, target/release/libfixpair.so")
+    path = parser.parse_args().library
+    if path is not None and not os.path.isfile(path):
+        parser.error(f"{path} is not there; `cargo rustc --release --lib --crate-type cdylib` makes target/release/libfixpair.so")
     pylians_power()
     pylians_shot_noise()
     pylians_deposit()
     pylians_bispectrum()
-    try:
-        import estimator  # noqa: F401  its Fortran part; nothing here calls it
-    except ImportError:
-        sys.modules["estimator"] = types.ModuleType("estimator")
-    try:
-        from pyspectrum import pyspectrum
-    except ImportError as error:
-        print("pySpectrum left out:", error)
-        return
-    folder = pyspectrum.dat_dir()
-    pyspectrum_bispectrum(pyspectrum)
-    pyspectrum_counts(pyspectrum, folder)
-    pyspectrum_power(pyspectrum)
+    pyspectrum = import_pyspectrum()
+    if pyspectrum is not None:
+        folder = pyspectrum.dat_dir()
+        pyspectrum_bispectrum(pyspectrum)
+        pyspectrum_counts(pyspectrum, folder)
+        pyspectrum.dat_dir = lambda: folder
+        pyspectrum_power(pyspectrum)
+    if path is None:
+        print("fixpair's library left out: --library PATH compares it as well")
+    else:
+        import check_library
+
+        check_library.run(path)
 
 
 if __name__ == "__main__":
