@@ -16,26 +16,14 @@ use fixpair::exec::Serial;
 use fixpair::fft::{Fft3, Tables, Transform};
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{Realisation, white_modes};
-use fixpair::scratch::Layout;
+
+#[path = "../examples/common/memory.rs"]
+mod memory;
+
+use memory::Memory;
 
 /// Width of a shell in k_f.
 const WIDTH: f64 = 3.0;
-
-struct Memory {
-    bytes: Vec<u8>,
-    layout: Layout,
-}
-
-impl Memory {
-    fn new(layout: Layout) -> Self {
-        Self { bytes: vec![0; layout.size + layout.align], layout }
-    }
-
-    fn get(&mut self) -> &mut [u8] {
-        let start = self.bytes.as_ptr().align_offset(self.layout.align);
-        &mut self.bytes[start..start + self.layout.size]
-    }
-}
 
 /// Seconds that this thread has spent on a processor, where the system tells: others use this machine too.
 fn now() -> Option<f64> {
@@ -124,20 +112,20 @@ fn main() {
         (0..repeats)
             .map(|_| {
                 seconds(|| {
-                    triangle_counts(&mut counts, &triangles, &edges, n, scratch.get(), &Serial)
+                    triangle_counts(&mut counts, &triangles, &edges, n, scratch.bytes(), &Serial)
                         .expect("counts");
                 })
             })
             .collect(),
     );
-    println!("counts            {counting:8.3} s  {:6.1} MB", scratch.layout.size as f64 / 1e6);
+    println!("counts            {counting:8.3} s  {:6.1} MB", scratch.bytes().len() as f64 / 1e6);
     drop(scratch);
 
     let mut tables = Memory::new(Tables::<f32>::layout(n).expect("a good side"));
-    let tables = Tables::<f32>::new(n, tables.get()).expect("a good side");
+    let tables = Tables::<f32>::new(n, tables.bytes()).expect("a good side");
     let mut workspace = Memory::new(Transform::<f32>::workspace(n).expect("a good side"));
     let cells = Brick::whole(n, Space::Configuration).expect("an even side");
-    let mut fft = Transform::new(&tables, cells, workspace.get(), &Serial).expect("a whole mesh");
+    let mut fft = Transform::new(&tables, cells, workspace.bytes(), &Serial).expect("a whole mesh");
     let fourier = *fft.fourier();
     let mut modes = vec![0.0_f32; fourier.reals()];
     white_modes(&mut modes, &fourier, &Realisation::new(1), &Serial).expect("modes");
@@ -165,7 +153,7 @@ fn main() {
             .map(|_| {
                 sums.fill(ExactSum::ZERO);
                 seconds(|| {
-                    bispectrum_sums(&mut sums, &triangles, &meshes, &cells, scratch.get(), &Serial)
+                    bispectrum_sums(&mut sums, &triangles, &meshes, &cells, scratch.bytes(), &Serial)
                         .expect("sums");
                 })
             })
@@ -176,7 +164,7 @@ fn main() {
     println!(
         "triple products   {products:8.3} s  {rate:.1} GFLOP/s useful, {:.0}% of peak, {:.1} MB of scratch",
         100.0 * rate / peak,
-        scratch.layout.size as f64 / 1e6
+        scratch.bytes().len() as f64 / 1e6
     );
 
     let mut scratch = Memory::new(bispectrum_scratch(&fft, shells, triangles.len()).expect("fits"));
@@ -188,13 +176,13 @@ fn main() {
         sums.fill(ExactSum::ZERO);
         let mut made = 0;
         let whole = seconds(|| {
-            let (sums, scratch) = (&mut sums, scratch.get());
+            let (sums, scratch) = (&mut sums, scratch.bytes());
             made = bispectrum(sums, &triangles, &edges, &modes, &mut fft, fields, scratch, &Serial)
                 .expect("sums");
         });
         println!("all, {meshes:3} meshes   {whole:8.3} s  {made} transforms");
         if meshes == shells {
-            let bytes = (fields.len() + modes.len()) * 4 + scratch.layout.size;
+            let bytes = (fields.len() + modes.len()) * 4 + scratch.bytes().len();
             println!("with counts       {:8.3} s  {:.2} GB", whole + counting, bytes as f64 / 1e9);
         }
     }

@@ -21,24 +21,13 @@ use fixpair::fft::{Fft3, Tables, Transform, recommended_padding};
 use fixpair::mesh::{Brick, Space};
 use fixpair::pm::Window;
 use fixpair::real::Real;
-use fixpair::scratch::Layout;
+
+#[path = "../examples/common/memory.rs"]
+mod memory;
+
+use memory::Memory;
 
 const N: usize = 256;
-
-/// Memory that begins on a cache line.
-struct Aligned(Vec<u8>, usize);
-
-impl Aligned {
-    fn new(layout: Layout) -> Self {
-        let bytes = vec![0; layout.size + layout.align];
-        let start = bytes.as_ptr().align_offset(layout.align);
-        Self(bytes, start)
-    }
-
-    fn bytes(&mut self) -> &mut [u8] {
-        &mut self.0[self.1..]
-    }
-}
 
 /// Noise, at the address of each real.
 fn noise<T: Real>(length: usize) -> Vec<T> {
@@ -64,7 +53,7 @@ fn sweep<T: Real>(criterion: &mut Criterion, name: &str, binning: &Binning<'_>, 
     let fields: Vec<&[T]> = data.iter().map(Vec::as_slice).collect();
     let pairs: Vec<[usize; 2]> = if fields.len() == 1 { vec![[0, 0]] } else { vec![[0, 0], [0, 1], [1, 1]] };
     let compensation = vec![Compensation::Aliased(Window::CloudInCell); fields.len()];
-    let mut scratch = Aligned::new(power_sums_scratch(&brick, binning, pairs.len()).unwrap());
+    let mut scratch = Memory::new(power_sums_scratch(&brick, binning, pairs.len()).unwrap());
     let mut words = vec![0; binning.words(pairs.len()).unwrap()];
     let mut group = criterion.benchmark_group("sweep");
     group.throughput(Throughput::Elements(brick.elements() as u64));
@@ -114,7 +103,7 @@ fn xi(criterion: &mut Criterion) {
     let binning = Binning { orders: 0b10101, ..Binning::shells(&edges) };
     let brick = Brick::whole_padded(N, Space::Configuration, recommended_padding::<f32>(N)).unwrap();
     let mesh = noise::<f32>(brick.reals());
-    let mut scratch = Aligned::new(correlation_sums_scratch(&brick, &binning, 1).unwrap());
+    let mut scratch = Memory::new(correlation_sums_scratch(&brick, &binning, 1).unwrap());
     let mut words = vec![0; binning.words(1).unwrap()];
     let mut group = criterion.benchmark_group("xi");
     group.throughput(Throughput::Elements(brick.elements() as u64));
@@ -129,9 +118,9 @@ fn xi(criterion: &mut Criterion) {
 
 /// From cells to P_l: one call after another, as a user writes it.
 fn whole(criterion: &mut Criterion) {
-    let mut tables = Aligned::new(Tables::<f32>::layout(N).unwrap());
+    let mut tables = Memory::new(Tables::<f32>::layout(N).unwrap());
     let tables = Tables::<f32>::new(N, tables.bytes()).unwrap();
-    let mut work = Aligned::new(Transform::<f32>::workspace(N).unwrap());
+    let mut work = Memory::new(Transform::<f32>::workspace(N).unwrap());
     let cells = Brick::whole_padded(N, Space::Configuration, recommended_padding::<f32>(N)).unwrap();
     let mut fft = Transform::new(&tables, cells, work.bytes(), &Serial).unwrap();
     let brick = *fft.fourier();
@@ -139,7 +128,7 @@ fn whole(criterion: &mut Criterion) {
     let edges = shells(true);
     let binning = Binning { orders: 0b10101, ..Binning::shells(&edges) };
     let compensation = [Compensation::Aliased(Window::CloudInCell)];
-    let mut scratch = Aligned::new(power_sums_scratch(&brick, &binning, 1).unwrap());
+    let mut scratch = Memory::new(power_sums_scratch(&brick, &binning, 1).unwrap());
     let mut words = vec![0; binning.words(1).unwrap()];
     let mut bins = vec![Bin::default(); binning.bins().unwrap()];
     let mut power = vec![0.0; bins.len() * 3];
