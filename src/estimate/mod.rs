@@ -9,6 +9,7 @@ pub mod exact;
 mod front;
 mod line;
 pub mod power;
+mod rows;
 mod sweep;
 
 #[cfg(test)]
