@@ -97,6 +97,27 @@ static void X(powers)(const REAL *f, const REAL *g, size_t length, const fixpair
     give_back(weights);
 }
 
+static void X(compensations)(const REAL *f, size_t length, const fixpair_brick *brick, const fixpair_exec *exec) {
+    REAL *modes = X(reals)(length);
+    fixpair_layout layout;
+    uint64_t hash;
+    void *scratch;
+    int aliased;
+    MUST(fixpair_compensate_scratch(&layout, brick));
+    scratch = take(layout.size);
+    hash = hash_layout(HASH_START, layout);
+    memcpy(modes, f, length * sizeof(REAL));
+    for (aliased = 0; aliased < 2; aliased++) {
+        int32_t compensation = aliased ? FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_PCS
+                                       : FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC;
+        MUST(X(fixpair_compensate)(modes, length, compensation, aliased ? -2.0 : 0.3, brick, scratch, layout.size, exec));
+        hash = hash_brick(hash, modes, brick, sizeof(REAL));
+    }
+    check_named("compensate", "", SUFFIX, hash);
+    give_back(scratch);
+    give_back(modes);
+}
+
 static void X(correlations)(const REAL *f, const REAL *g, size_t length, const fixpair_brick *brick,
                             const X(fixpair_fft) *fft, const fixpair_exec *exec) {
     REAL *meshes[2];
@@ -228,6 +249,7 @@ static void X(estimates)(const fixpair_exec *exec) {
     MUST(X(fixpair_white_modes)(g, length, &transform.fft.fourier, &realisation, NULL, 0, exec));
     CHECK(length == transform.fft.length);
     X(powers)(f, g, length, &transform.fft.fourier, exec);
+    X(compensations)(f, length, &transform.fft.fourier, exec);
     X(correlations)(f, g, length, &transform.fft.fourier, &transform.fft, exec);
     X(bispectra)(f, length, &transform.fft, exec);
     give_back(f);

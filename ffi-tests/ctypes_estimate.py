@@ -183,6 +183,7 @@ class Estimates:
 
     def run(self):
         self.powers()
+        self.compensations()
         self.correlations()
         self.bispectra()
 
@@ -214,6 +215,16 @@ class Estimates:
         self.twin.call("shot_noise", noises[0], weights.start, 500, BOX)
         check(noises[1].value == BOX**3 / 500, "equal particles have the noise V/N")
         self.twin.case("shot_noise", doubles(*(noise.value for noise in noises)))
+
+    def compensations(self):
+        layout = made(Layout, self.library.compensate_scratch, self.brick)
+        scratch, pieces = scratch_of(layout), [sizes(layout)]
+        modes = filled(self.twin.real, list(self.f.array))
+        for compensation, scale in ((fixpair.WINDOW + fixpair.TSC, 0.3), (fixpair.ALIASED + fixpair.PCS, -2.0)):
+            self.twin.call("compensate", modes.start, self.length, compensation, scale, self.brick, scratch.start,
+                           scratch.size, self.twin.run)
+            pieces.append(elements(modes, self.brick))
+        self.twin.case("compensate", *pieces)
 
     def correlations(self):
         layout = made(Layout, self.library.correlation_modes_scratch, self.brick)

@@ -119,6 +119,9 @@ static void estimates(double *data, float *single, double *scratch, int64_t *sum
         }
     }
     sane(fixpair_shot_noise_f64(noises, data, few(LENGTH) % LENGTH, maybe(100.0)));
+    sane(fixpair_compensate_scratch(&layout, &b));
+    sane(fixpair_compensate_f64(data, LENGTH, word() % 2 ? choice() : 18, maybe(1.0), &b, scratch, BYTES, NULL));
+    sane(fixpair_compensate_f32(single, LENGTH / 2, 33 + choice(), maybe(1.0), &b, scratch, size(), NULL));
     sane(fixpair_correlation_modes_scratch(&layout, &b));
     sane(fixpair_correlation_modes_f64(data, data + LENGTH, LENGTH, word() % 2 ? choice() : 34, choice() + 16, maybe(1.0), &b,
                                        scratch, BYTES, NULL));

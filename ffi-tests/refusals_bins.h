@@ -12,6 +12,7 @@ CALL(edges_wavenumbers, (P(0), P(1), L(0), a->d[0]))
 CALL(edges_exact, (P(0), L(0), a->u))
 CALL(power_sums_scratch, (P(0), P(1), P(2), L(0)))
 CALL(subtract_shot_noise, (P(0), L(0), P(1), L(1), P(2), L(2), (uint32_t)a->u, P(3), L(3)))
+CALL(compensate_scratch, (P(0), P(1)))
 CALL(correlation_modes_scratch, (P(0), P(1)))
 CALL(correlation_sums_scratch, (P(0), P(1), P(2), L(0)))
 CALL(closed_triangle_count, (P(0), P(1), L(0), P(2)))
@@ -268,12 +269,15 @@ static void scratch_of_sums(void) {
         refuse_bricks(brick);
         refuse_binnings(binning, t.a.p[0]);
     }
-    begin("correlation_modes_scratch", call_correlation_modes_scratch);
-    STRUCT(0, OUT, fixpair_layout);
-    brick = STRUCT(1, IN, fixpair_brick);
-    MUST(fixpair_brick_whole(brick, SIDE, FIXPAIR_SPACE_FOURIER, 0));
-    refuse_pointers_and_lengths();
-    refuse_bricks(brick);
+    for (which = 0; which < 2; which++) {
+        begin(which ? "compensate_scratch" : "correlation_modes_scratch",
+              which ? call_compensate_scratch : call_correlation_modes_scratch);
+        STRUCT(0, OUT, fixpair_layout);
+        brick = STRUCT(1, IN, fixpair_brick);
+        MUST(fixpair_brick_whole(brick, SIDE, FIXPAIR_SPACE_FOURIER, 0));
+        refuse_pointers_and_lengths();
+        refuse_bricks(brick);
+    }
 }
 
 /* Edges at p[pointer]. */

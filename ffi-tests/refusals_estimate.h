@@ -11,6 +11,7 @@ CALL_REAL(copy_cells, (P(0), L(0), P(1), P(2), L(1), P(3), P(4)))
 CALL_REAL(interlace, (P(0), P(1), L(0), P(2), P(3)))
 CALL_REAL(power_sums, (P(0), L(0), P(1), L(1), L(2), P(2), L(3), P(3), P(4), P(5), P(6), L(4), P(7)))
 CALL_REAL(shot_noise, (P(0), P(1), a->u, a->d[0]))
+CALL_REAL(compensate, (P(0), L(0), a->i[0], a->d[0], P(1), P(2), L(1), P(3)))
 CALL_REAL(correlation_modes, (P(0), P(1), L(0), a->i[0], a->i[1], a->d[0], P(2), P(3), L(1), P(4)))
 CALL_REAL(correlation_sums, (P(0), L(0), P(1), L(1), L(2), P(2), P(3), P(4), L(3), P(5)))
 CALL_REAL(shell_modes, (P(0), P(1), L(0), P(2), a->u, L(1), P(3)))
@@ -262,6 +263,24 @@ static void X(refuse_spectra)(void) {
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, t.a.d[0] = (double)NAN);
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, weights[2] = (REAL)NAN);
     REFUSED(FIXPAIR_ERROR_RANGE, weights[3] = -1);
+
+    begin("compensate" SUFFIX, X(call_compensate));
+    MUST(fixpair_compensate_scratch(&layout, &modes_brick));
+    ARRAY(0, OUT, REAL, reals);
+    own = STRUCT(1, IN, fixpair_brick);
+    *own = modes_brick;
+    SCRATCH_OF(2, layout.size);
+    exec_at(3);
+    length(0, reals, LEAST);
+    length(1, layout.size, SCRATCH);
+    t.a.i[0] = FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC;
+    t.a.d[0] = 0.5;
+    refuse_pointers_and_lengths();
+    refuse_bricks(own);
+    X(refuse_compensations)(&t.a.i[0]);
+    ACCEPTED(t.a.i[0] = FIXPAIR_COMPENSATION_NONE);
+    REFUSED(FIXPAIR_ERROR_NOT_FINITE, t.a.d[0] = (double)NAN);
+    REFUSED(FIXPAIR_ERROR_NOT_FINITE, t.a.d[0] = (double)INFINITY);
 
     begin("correlation_modes" SUFFIX, X(call_correlation_modes));
     MUST(fixpair_correlation_modes_scratch(&layout, &modes_brick));

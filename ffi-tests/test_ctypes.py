@@ -266,7 +266,7 @@ OPTIONAL = {"white_modes": [3, 4, 6], "fft_init": [6], "initial_conditions_scrat
             "closed_triangles": [4], "triangle_counts": [8], "bispectrum_sums": [9], "bispectrum": [1, 13]}
 EXEC = ("particle_ids", "potential_amplitude_table", "alpha_table", "impose", "modes_from_field", "scale_modes",
         "copy_modes", "add_local", "second_order_source", "displacement", "add_cells", "copy_cells", "interlace",
-        "shell_modes")
+        "shell_modes", "compensate")
 # Sizes that follow a pointer and are not its length: sides, an axis, a number of threads.
 NO_LENGTH = {"mode_table_length": 1, "fft_tables_scratch": 1, "fft_scratch": 1, "brick_whole": 1, "brick_slab": 1,
              "brick_transposed_slab": 1, "threads_create": 2, "displacement": 5, "displace": 6, "deposit_scratch": 2,

@@ -1852,6 +1852,51 @@ fixpair_status_t fixpair_subtract_shot_noise(double *values,
                                              size_t noise_len);
 
 /*
+ * Scratch of fixpair_compensate_*: n/2 + 1 double.
+ *
+ * Out: scratch
+ * In:  brick  of Fourier space
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, or why the brick is refused
+ */
+fixpair_status_t fixpair_compensate_scratch(struct fixpair_layout *scratch,
+                                            const struct fixpair_brick *brick);
+
+/*
+ * f_k <- scale f_k, compensated: for functions that take modes as they are, as fixpair_bispectrum_* and fixpair_shell_modes_* do.
+ *
+ * fixpair_power_sums_* and fixpair_correlation_modes_* compensate by themselves: modes that were compensated here go there with
+ * FIXPAIR_COMPENSATION_NONE.
+ *
+ * In/out: modes         len reals
+ * In:     compensation  FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC and so on
+ *         scale         of the field: 1/(sum of weights) makes a transformed deposit its density contrast; 1 leaves it
+ *         brick         of Fourier space
+ *         scratch       scratch_len bytes, see fixpair_compensate_scratch
+ *         exec          or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _SCRATCH, _CHOICE, _NOT_FINITE for the scale, or why the brick is refused;
+ *          FIXPAIR_ERROR_HOOK, after which modes are undefined. Modes are not checked.
+ * Cost: one pass over the modes
+ */
+fixpair_status_t fixpair_compensate_f64(double *modes,
+                                        size_t len,
+                                        int32_t compensation,
+                                        double scale,
+                                        const struct fixpair_brick *brick,
+                                        void *scratch,
+                                        size_t scratch_len,
+                                        const struct fixpair_exec *exec);
+
+/* fixpair_compensate_f64 in single precision. */
+fixpair_status_t fixpair_compensate_f32(float *modes,
+                                        size_t len,
+                                        int32_t compensation,
+                                        double scale,
+                                        const struct fixpair_brick *brick,
+                                        void *scratch,
+                                        size_t scratch_len,
+                                        const struct fixpair_exec *exec);
+
+/*
  * Correlation function
  * ====================
  */
@@ -2048,7 +2093,7 @@ fixpair_status_t fixpair_triangle_counts(uint64_t *counts,
  * takes.
  *
  * Out: out    len reals
- * In:  modes  len reals: modes with delta(x) = sum_k delta_k exp(+i k.x)
+ * In:  modes  len reals: modes with delta(x) = sum_k delta_k exp(+i k.x); those of a deposit compensated before, by fixpair_compensate_f64
  *      brick  of Fourier space, where both lie, in any layout
  *      lo, hi edges of the shell; hi at most (n/2)^2
  *      exec   or NULL
@@ -2183,7 +2228,8 @@ fixpair_status_t fixpair_bispectrum_scratch_f32(struct fixpair_layout *scratch,
  * Out:    transforms  how many it took; or NULL
  * In:     triangles   3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
  *         edges       edges_len increasing values of |n|^2: shell s holds edges[s] <= |n|^2 < edges[s+1]; the last at most (n/2)^2
- *         modes       len reals on fft->fourier: delta(x) = sum_k delta_k exp(+i k.x)
+ *         modes       len reals on fft->fourier: delta(x) = sum_k delta_k exp(+i k.x); those of a deposit compensated before, by
+ *                     fixpair_compensate_f64
  *         fft         the transform
  *         fields      fields_len reals, overwritten: those of fixpair_bispectrum_meshes_f64 for as many meshes as can be had
  *         scratch     scratch_len bytes, see fixpair_bispectrum_scratch_f64

@@ -181,7 +181,7 @@ pub unsafe extern "C" fn fixpair_triangle_counts(
 /// takes.
 ///
 /// Out: out    len reals
-/// In:  modes  len reals: modes with delta(x) = sum_k delta_k exp(+i k.x)
+/// In:  modes  len reals: modes with delta(x) = sum_k delta_k exp(+i k.x); those of a deposit compensated before, by fixpair_compensate_f64
 ///      brick  of Fourier space, where both lie, in any layout
 ///      lo, hi edges of the shell; hi at most (n/2)^2
 ///      exec   or NULL
@@ -513,7 +513,8 @@ unsafe fn whole_scratch<H: Hook>(
 /// Out:    transforms  how many it took; or NULL
 /// In:     triangles   3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
 ///         edges       edges_len increasing values of |n|^2: shell s holds edges[s] <= |n|^2 < edges[s+1]; the last at most (n/2)^2
-///         modes       len reals on fft->fourier: delta(x) = sum_k delta_k exp(+i k.x)
+///         modes       len reals on fft->fourier: delta(x) = sum_k delta_k exp(+i k.x); those of a deposit compensated before, by
+///                     fixpair_compensate_f64
 ///         fft         the transform
 ///         fields      fields_len reals, overwritten: those of fixpair_bispectrum_meshes_f64 for as many meshes as can be had
 ///         scratch     scratch_len bytes, see fixpair_bispectrum_scratch_f64

@@ -8,7 +8,7 @@ use super::exec::{HostExec, fixpair_exec};
 use super::mesh::fixpair_brick;
 use super::status::{code, fixpair_status_t};
 use crate::estimate::binning::Bin;
-use crate::estimate::compensation::Compensation;
+use crate::estimate::compensation::{Compensation, compensate, compensate_scratch};
 use crate::estimate::power::{power_sums, power_sums_scratch, shot_noise, subtract_shot_noise};
 use crate::pm::Window;
 use crate::real::Real;
@@ -310,4 +310,98 @@ pub unsafe extern "C" fn fixpair_subtract_shot_noise(
             subtract_shot_noise(values, pairs, bins, orders, border.read(noise, noise_len)?)
         }
     })())
+}
+
+/// Scratch of fixpair_compensate_*: n/2 + 1 double.
+///
+/// Out: scratch
+/// In:  brick  of Fourier space
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, or why the brick is refused
+///
+/// # Safety
+/// Pointers are null or point to one value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_compensate_scratch(
+    scratch: *mut Layout,
+    brick: *const fixpair_brick,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise.
+        let (scratch, brick) = unsafe { (border.write_one(scratch)?, border.read_one(brick)?) };
+        *scratch = compensate_scratch(&brick.check()?)?;
+        Ok(())
+    })())
+}
+
+/// f_k <- scale f_k, compensated: for functions that take modes as they are, as fixpair_bispectrum_* and fixpair_shell_modes_* do.
+///
+/// fixpair_power_sums_* and fixpair_correlation_modes_* compensate by themselves: modes that were compensated here go there with
+/// FIXPAIR_COMPENSATION_NONE.
+///
+/// In/out: modes         len reals
+/// In:     compensation  FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC and so on
+///         scale         of the field: 1/(sum of weights) makes a transformed deposit its density contrast; 1 leaves it
+///         brick         of Fourier space
+///         scratch       scratch_len bytes, see fixpair_compensate_scratch
+///         exec          or NULL
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _SCRATCH, _CHOICE, _NOT_FINITE for the scale, or why the brick is refused;
+///          FIXPAIR_ERROR_HOOK, after which modes are undefined. Modes are not checked.
+/// Cost: one pass over the modes
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_compensate_f64(
+    modes: *mut f64,
+    len: usize,
+    compensation: i32,
+    scale: f64,
+    brick: *const fixpair_brick,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { divide(modes, len, compensation, scale, brick, scratch, scratch_len, exec) })
+}
+
+/// fixpair_compensate_f64 in single precision.
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_compensate_f32(
+    modes: *mut f32,
+    len: usize,
+    compensation: i32,
+    scale: f64,
+    brick: *const fixpair_brick,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { divide(modes, len, compensation, scale, brick, scratch, scratch_len, exec) })
+}
+
+unsafe fn divide<T: Real>(
+    modes: *mut T,
+    len: usize,
+    compensation: i32,
+    scale: f64,
+    brick: *const fixpair_brick,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise.
+    unsafe {
+        let modes = border.write(modes, len)?;
+        let chosen = self::compensation(compensation)?;
+        let brick = border.read_one(brick)?.check()?;
+        let scratch = border.scratch(scratch, scratch_len)?;
+        compensate(modes, chosen, scale, &brick, scratch, &HostExec::new(&mut border, exec)?)
+    }
 }
