@@ -20,7 +20,7 @@ CALL(closed_triangles, (P(0), L(0), P(1), L(1), P(2)))
 CALL(squeezed_triangles, (P(0), L(0), L(1), L(2)))
 CALL(triangle_counts_scratch, (P(0), P(1), L(0), P(2), L(1), L(2)))
 CALL(triangle_counts, (P(0), P(1), L(0), P(2), L(1), L(2), P(3), L(3), P(4)))
-CALL(bispectrum_values, (P(0), P(1), L(0)))
+CALL(bispectrum_values, (P(0), L(0), P(1), L(1)))
 CALL(bispectrum_normalise, (P(0), P(1), L(0), L(1), a->d[0], a->d[1]))
 CALL(bispectrum_shot_noise, (P(0), P(1), L(0), P(2), L(1), a->d[0]))
 CALL(bispectrum_reduced, (P(0), P(1), P(2), L(0), P(3), L(1)))
@@ -41,7 +41,7 @@ static fixpair_binning *binning_at(int pointer) {
     binning->second = FIXPAIR_SECOND_COSINE;
     binning->second_edges = wedges;
     binning->second_edges_len = 3;
-    binning->orders = 5;
+    binning->orders = FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_2;
     return binning;
 }
 
@@ -385,10 +385,11 @@ static void numbers_of_triangles(void) {
     begin("bispectrum_values", call_bispectrum_values);
     ARRAY(0, OUT, double, TRIANGLES);
     sums = ARRAY(1, IN, int64_t, SUM * TRIANGLES);
-    length(0, TRIANGLES, FREE);
+    length(0, TRIANGLES, EXACT);
+    length(1, SUM * TRIANGLES, EXACT);
     refuse_pointers_and_lengths();
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, sums[SUM - 1] = 1);
-    ACCEPTED((t.a.n[0] = 0, t.a.p[0] = NULL, t.a.p[1] = NULL));
+    ACCEPTED((t.a.n[0] = t.a.n[1] = 0, t.a.p[0] = NULL, t.a.p[1] = NULL));
 
     begin("bispectrum_normalise", call_bispectrum_normalise);
     values = ARRAY(0, OUT, double, TRIANGLES);

@@ -175,6 +175,21 @@
 /* Bins of n_perp and |n.a|, for P(k_perp, k_par). */
 #define FIXPAIR_SECOND_PARALLEL 2
 
+/* In orders: the mean, l = 0. */
+#define FIXPAIR_MULTIPOLE_0 1
+
+/* In orders: the dipole, l = 1. */
+#define FIXPAIR_MULTIPOLE_1 2
+
+/* In orders: the quadrupole, l = 2. */
+#define FIXPAIR_MULTIPOLE_2 4
+
+/* In orders: l = 3. */
+#define FIXPAIR_MULTIPOLE_3 8
+
+/* In orders: the hexadecapole, l = 4. */
+#define FIXPAIR_MULTIPOLE_4 16
+
 /* Modes are taken as they are. */
 #define FIXPAIR_COMPENSATION_NONE 0
 
@@ -525,7 +540,7 @@ typedef struct fixpair_binning {
   size_t edges_len;
   /* FIXPAIR_SECOND_... */
   int32_t second;
-  /* Multipoles: bit l asks for l = 0..4. 1 is the mean alone, 21 is l = 0, 2, 4. */
+  /* Multipoles: FIXPAIR_MULTIPOLE_0, or several: FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_2 | FIXPAIR_MULTIPOLE_4. */
   uint32_t orders;
   /* Increasing edges of the second coordinate; NULL without one. */
   const double *second_edges;
@@ -609,8 +624,8 @@ fixpair_status_t fixpair_brick_transposed_slab(struct fixpair_brick *brick,
  * Checks a brick, and says how many reals its array must at least have.
  *
  * Out: reals  from the first element to the end of the last; for an in-place transform take the larger of both spaces
- * In:  brick
- * Returns: 0, or why the brick is refused
+ * In:  brick  in configuration space it may run over the edge (fixpair_brick_with_ghosts)
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, or why the brick is refused
  */
 fixpair_status_t fixpair_brick_reals(size_t *reals,
                                      const struct fixpair_brick *brick);
@@ -1377,8 +1392,8 @@ fixpair_status_t fixpair_particle_ids(uint64_t *ids,
  * The particles are those with start H <= x < (start + count) H, H = L/n; a rounding error beyond counts as inside. Planes before and
  * after: NGP 0 and 1, CIC 0 and 1, TSC 1 and 2, PCS 1 and 2 for mesh points at i H; NGP 0 and 0, CIC 1 and 1, TSC 1 and 1, PCS 2
  * and 2 at (i + 1/2) H. If they meet round the mesh, the axis is whole. The result may run over the edge of the mesh: on each
- * axis it holds the cells (start + a) mod n, 0 <= a < count. fixpair_deposit, fixpair_read_out, fixpair_add_cells and fixpair_copy_cells take such
- * bricks, other functions do not. Its cells lie close together, z fastest: its array has count[0] count[1] count[2] reals.
+ * axis it holds the cells (start + a) mod n, 0 <= a < count. fixpair_deposit, fixpair_read_out, fixpair_add_cells, fixpair_copy_cells and
+ * fixpair_brick_reals take such bricks, other functions do not. Its cells lie close together, z fastest: its array has count[0] count[1] count[2] reals.
  *
  * Out: ghosted
  * In:  brick   of configuration space: the cells that this process owns
@@ -1420,7 +1435,7 @@ fixpair_status_t fixpair_deposit_scratch_f32(struct fixpair_layout *scratch,
  * taken. With n below p its cells wrap onto each other. The result is the same, bit for bit, on any number of threads; regions that share cells
  * agree to rounding.
  *
- * Out: mesh      mesh_len reals on the region, added to: set them to zero first
+ * In/Out: mesh   mesh_len reals on the region, added to: set them to zero first
  * In:  region    of configuration space; may run over the edge (fixpair_brick_with_ghosts)
  *      position
  *      weights   of particle i at weights[i * weights_stride]; NULL for 1 each
@@ -1539,7 +1554,7 @@ fixpair_status_t fixpair_read_out_f32(float *values,
  *
  * A plane goes straight to its owner, so slabs may be thinner than their ghosts.
  *
- * Out: target         target_len reals, added to where both regions hold a cell, else untouched
+ * In/Out: target      target_len reals, added to where both regions hold a cell, else untouched
  * In:  target_region  of configuration space; may run over the edge
  *      source         source_len reals
  *      source_region  the same, of a mesh of the same n
@@ -1569,7 +1584,7 @@ fixpair_status_t fixpair_add_cells_f32(float *target,
  *
  * It is the way back of fixpair_add_cells_f64: owners send the planes, and the receiver copies them into its slab with ghosts.
  *
- * Out: target         target_len reals, overwritten where both regions hold a cell, else untouched
+ * In/Out: target      target_len reals, overwritten where both regions hold a cell, else untouched
  * In:  target_region, source, source_region, exec  as fixpair_add_cells_f64
  * Returns: as fixpair_add_cells_f64
  * Cost: one pass over the shared cells
@@ -1767,7 +1782,7 @@ fixpair_status_t fixpair_power_sums_scratch(struct fixpair_layout *scratch,
  *
  * In/out: sums          sums_len integers, zeros at first
  * In:     fields        fields_len <= 8 pointers to modes on the brick, len reals each
- *         pairs         pairs_len pairs of field numbers: {0, 0} for the spectrum of the first, {0, 1} for its cross spectrum with the second
+ *         pairs         2 pairs_len numbers of fields: {0, 0, 0, 1} for the spectrum of the first and its cross spectrum with the second
  *         compensation  one for each field: FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_CIC and so on; NULL for none
  *         brick         of Fourier space
  *         binning
@@ -1783,7 +1798,7 @@ fixpair_status_t fixpair_power_sums_f64(int64_t *sums,
                                         const double *const *fields,
                                         size_t fields_len,
                                         size_t len,
-                                        const size_t (*pairs)[2],
+                                        const size_t *pairs,
                                         size_t pairs_len,
                                         const int32_t *compensation,
                                         const struct fixpair_brick *brick,
@@ -1798,7 +1813,7 @@ fixpair_status_t fixpair_power_sums_f32(int64_t *sums,
                                         const float *const *fields,
                                         size_t fields_len,
                                         size_t len,
-                                        const size_t (*pairs)[2],
+                                        const size_t *pairs,
                                         size_t pairs_len,
                                         const int32_t *compensation,
                                         const struct fixpair_brick *brick,
@@ -1811,21 +1826,23 @@ fixpair_status_t fixpair_power_sums_f32(int64_t *sums,
  * The shot noise of particles: V sum w^2/(sum w)^2, or V/N without weights, V = L^3.
  *
  * Out: noise      in the unit of L^3
- * In:  weights    one for each particle; NULL for equal weights
+ * In:  weights    of particle i at weights[i * weights_stride]; NULL, with a stride of 0, for equal weights
  *      particles  how many
  *      box_size   L
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive, no particles, or weights
- *          that sum to 0
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive, no particles,
+ *          weights that sum to 0, or weights with a stride of 0
  */
 fixpair_status_t fixpair_shot_noise_f64(double *noise,
                                         const double *weights,
-                                        uint64_t particles,
+                                        size_t weights_stride,
+                                        size_t particles,
                                         double box_size);
 
 /* fixpair_shot_noise_f64 for weights in single precision. */
 fixpair_status_t fixpair_shot_noise_f32(double *noise,
                                         const float *weights,
-                                        uint64_t particles,
+                                        size_t weights_stride,
+                                        size_t particles,
                                         double box_size);
 
 /*
@@ -1835,7 +1852,7 @@ fixpair_status_t fixpair_shot_noise_f32(double *noise,
  * well below the Nyquist frequency.
  *
  * In/out: values  values_len numbers: the normalised spectra of all pairs
- * In:     pairs   pairs_len pairs of field numbers
+ * In:     pairs   2 pairs_len numbers of fields
  *         bins    bins_len bins; empty ones stay 0
  *         orders  as in the binning
  *         noise   noise_len values: of each field
@@ -1843,7 +1860,7 @@ fixpair_status_t fixpair_shot_noise_f32(double *noise,
  */
 fixpair_status_t fixpair_subtract_shot_noise(double *values,
                                              size_t values_len,
-                                             const size_t (*pairs)[2],
+                                             const size_t *pairs,
                                              size_t pairs_len,
                                              const struct fixpair_bin *bins,
                                              size_t bins_len,
@@ -2146,7 +2163,7 @@ fixpair_status_t fixpair_bispectrum_sums_scratch_f32(struct fixpair_layout *scra
  * bit. fixpair_bispectrum_values makes numbers of them. In single precision products of three fields vanish below 1e-38 and
  * overflow above 3e38.
  *
- * In/Out: sums     FIXPAIR_BISPECTRUM_WORDS * triangles_len integers
+ * In/Out: sums     sums_len = FIXPAIR_BISPECTRUM_WORDS * triangles_len integers
  * In:     triangles  3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
  *         fields   shells pointers to len reals each; those of shells that no triangle names may be NULL
  *         brick    of configuration space, where each field lies; what lies between its rows is not read
@@ -2157,6 +2174,7 @@ fixpair_status_t fixpair_bispectrum_sums_scratch_f32(struct fixpair_layout *scra
  * Cost: each field is read once; for all triangles of many shells 2 flops for each triangle and cell
  */
 fixpair_status_t fixpair_bispectrum_sums_f64(int64_t *sums,
+                                             size_t sums_len,
                                              const uint32_t *triangles,
                                              size_t triangles_len,
                                              const double *const *fields,
@@ -2169,6 +2187,7 @@ fixpair_status_t fixpair_bispectrum_sums_f64(int64_t *sums,
 
 /* fixpair_bispectrum_sums_f64 in single precision. */
 fixpair_status_t fixpair_bispectrum_sums_f32(int64_t *sums,
+                                             size_t sums_len,
                                              const uint32_t *triangles,
                                              size_t triangles_len,
                                              const float *const *fields,
@@ -2224,7 +2243,7 @@ fixpair_status_t fixpair_bispectrum_scratch_f32(struct fixpair_layout *scratch,
  * triangles 20 meshes take 116 transforms, 10 meshes 408, 3 meshes 5474. The bits do not depend on it. Where fft holds a
  * part of the mesh, all processes call with as many meshes and the same triangles, and add their sums.
  *
- * In/Out: sums        FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first
+ * In/Out: sums        sums_len = FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first
  * Out:    transforms  how many it took; or NULL
  * In:     triangles   3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
  *         edges       edges_len increasing values of |n|^2: shell s holds edges[s] <= |n|^2 < edges[s+1]; the last at most (n/2)^2
@@ -2239,6 +2258,7 @@ fixpair_status_t fixpair_bispectrum_scratch_f32(struct fixpair_layout *scratch,
  *          FIXPAIR_ERROR_NOT_FINITE if a sum is NaN or infinite; sums are untouched by all
  */
 fixpair_status_t fixpair_bispectrum_f64(int64_t *sums,
+                                        size_t sums_len,
                                         size_t *transforms,
                                         const uint32_t *triangles,
                                         size_t triangles_len,
@@ -2255,6 +2275,7 @@ fixpair_status_t fixpair_bispectrum_f64(int64_t *sums,
 
 /* fixpair_bispectrum_f64 in single precision. */
 fixpair_status_t fixpair_bispectrum_f32(int64_t *sums,
+                                        size_t sums_len,
                                         size_t *transforms,
                                         const uint32_t *triangles,
                                         size_t triangles_len,
@@ -2272,13 +2293,14 @@ fixpair_status_t fixpair_bispectrum_f32(int64_t *sums,
 /*
  * The sums of triangles as numbers, each rounded once.
  *
- * Out: values  len numbers: sum over cells of D_i D_j D_k
- * In:  sums    FIXPAIR_BISPECTRUM_WORDS * len integers
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE if a sum lost a term that was not finite
+ * Out: values  values_len numbers, one a triangle: sum over cells of D_i D_j D_k
+ * In:  sums    sums_len = FIXPAIR_BISPECTRUM_WORDS * values_len integers
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_NOT_FINITE if a sum lost a term that was not finite
  */
 fixpair_status_t fixpair_bispectrum_values(double *values,
+                                           size_t values_len,
                                            const int64_t *sums,
-                                           size_t len);
+                                           size_t sums_len);
 
 /*
  * From sums over cells to B = V^2 (scale^3/n^3) value/count, V = L^3; 0 where no modes close the triangle.

@@ -10,10 +10,10 @@
 
 #define PI 3.141592653589793
 
-enum { MULTIPOLES = 3, P_0_2_4 = 1 << 0 | 1 << 2 | 1 << 4, MESHES = 3 };
+enum { MULTIPOLES = 3, P_0_2_4 = FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_2 | FIXPAIR_MULTIPOLE_4, MESHES = 3 };
 
 /* The auto spectrum of the only field. */
-static const size_t itself[1][2] = {{0, 0}};
+static const size_t itself[] = {0, 0};
 
 /* ---- The hook of the transform is the place to see how far a long call is: two deposits and a transform a shell. */
 
@@ -100,7 +100,7 @@ int spectra_open(struct spectra *spectra, const struct spectra_choice *choice, c
         return 1;
     }
     TRY(shells_open(&spectra->narrow, (size_t)narrow, 1.0, 1.0, P_0_2_4));
-    TRY(shells_open(&spectra->wide, (size_t)wide, width / 2.0, width, 1));
+    TRY(shells_open(&spectra->wide, (size_t)wide, width / 2.0, width, FIXPAIR_MULTIPOLE_0));
     size_t triangles = spectra->wide.count;
     spectra->triangles = calloc(3 * triangles, sizeof *spectra->triangles);
     spectra->counts = calloc(triangles, sizeof *spectra->counts);
@@ -216,14 +216,14 @@ static int measure_power(struct spectra *spectra, struct spectra_shells *shells,
 static int measure_bispectrum(struct spectra *spectra, struct spectra_result *result, double scale) {
     const struct spectra_shells *wide = &spectra->wide;
     const struct fixpair_fft_f64 *fft = &spectra->hook;
-    size_t count = wide->count;
+    size_t count = wide->count, words = FIXPAIR_BISPECTRUM_WORDS * count;
     TRY(fixpair_compensate_f64(spectra->mesh, fft->length, FIXPAIR_COMPENSATION_WINDOW + spectra->choice.window, scale,
                                &fft->fourier, spectra->scratch, spectra->scratch_len, spectra->exec));
-    memset(spectra->triangle_sums, 0, FIXPAIR_BISPECTRUM_WORDS * count * sizeof *spectra->triangle_sums);
-    TRY(fixpair_bispectrum_f64(spectra->triangle_sums, NULL, spectra->triangles, count, wide->edges, count + 1, spectra->mesh,
-                               fft->length, fft, spectra->fields, spectra->fields_len, spectra->scratch, spectra->scratch_len,
+    memset(spectra->triangle_sums, 0, words * sizeof *spectra->triangle_sums);
+    TRY(fixpair_bispectrum_f64(spectra->triangle_sums, words, NULL, spectra->triangles, count, wide->edges, count + 1,
+                               spectra->mesh, fft->length, fft, spectra->fields, spectra->fields_len, spectra->scratch, spectra->scratch_len,
                                spectra->exec));
-    TRY(fixpair_bispectrum_values(result->bispectrum, spectra->triangle_sums, count));
+    TRY(fixpair_bispectrum_values(result->bispectrum, count, spectra->triangle_sums, words));
     TRY(fixpair_bispectrum_normalise(result->bispectrum, spectra->counts, count, spectra->choice.n, spectra->choice.box_size, 1.0));
     return 0;
 }
@@ -253,7 +253,7 @@ int spectra_measure(struct spectra *spectra, struct spectra_result *result, cons
     result->bispectrum_noise = result->bispectrum + wide;
     result->reduced = result->bispectrum_noise + wide;
 
-    TRY(fixpair_shot_noise_f64(&result->noise, NULL, position->length, spectra->choice.box_size));
+    TRY(fixpair_shot_noise_f64(&result->noise, NULL, 0, position->length, spectra->choice.box_size));
     TRY(deposit(spectra, spectra->mesh, position, 0.0));
     if (spectra->choice.interlaced) {
         TRY(deposit(spectra, spectra->fields, position, 0.5));

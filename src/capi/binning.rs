@@ -13,6 +13,17 @@ pub const FIXPAIR_SECOND_COSINE: i32 = 1;
 /// Bins of n_perp and |n.a|, for P(k_perp, k_par).
 pub const FIXPAIR_SECOND_PARALLEL: i32 = 2;
 
+/// In orders: the mean, l = 0.
+pub const FIXPAIR_MULTIPOLE_0: u32 = 1;
+/// In orders: the dipole, l = 1.
+pub const FIXPAIR_MULTIPOLE_1: u32 = 2;
+/// In orders: the quadrupole, l = 2.
+pub const FIXPAIR_MULTIPOLE_2: u32 = 4;
+/// In orders: l = 3.
+pub const FIXPAIR_MULTIPOLE_3: u32 = 8;
+/// In orders: the hexadecapole, l = 4.
+pub const FIXPAIR_MULTIPOLE_4: u32 = 16;
+
 /// What spectra and correlation functions are binned by. n is an integer vector: the mode k = (2 pi/L) n, or the separation x = (L/N) n.
 ///
 /// Bin b holds edges[b] <= |n|^2 < edges[b+1]: integers, so that no mode lies on an edge by rounding. With a second coordinate bin (b, c) is number
@@ -33,7 +44,7 @@ pub struct fixpair_binning {
     pub edges_len: usize,
     /// FIXPAIR_SECOND_...
     pub second: i32,
-    /// Multipoles: bit l asks for l = 0..4. 1 is the mean alone, 21 is l = 0, 2, 4.
+    /// Multipoles: FIXPAIR_MULTIPOLE_0, or several: FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_2 | FIXPAIR_MULTIPOLE_4.
     pub orders: u32,
     /// Increasing edges of the second coordinate; NULL without one.
     pub second_edges: *const f64,

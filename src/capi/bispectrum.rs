@@ -298,7 +298,7 @@ unsafe fn sums_scratch<T: Real>(
 /// bit. fixpair_bispectrum_values makes numbers of them. In single precision products of three fields vanish below 1e-38 and
 /// overflow above 3e38.
 ///
-/// In/Out: sums     FIXPAIR_BISPECTRUM_WORDS * triangles_len integers
+/// In/Out: sums     sums_len = FIXPAIR_BISPECTRUM_WORDS * triangles_len integers
 /// In:     triangles  3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
 ///         fields   shells pointers to len reals each; those of shells that no triangle names may be NULL
 ///         brick    of configuration space, where each field lies; what lies between its rows is not read
@@ -313,6 +313,7 @@ unsafe fn sums_scratch<T: Real>(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_sums_f64(
     sums: *mut i64,
+    sums_len: usize,
     triangles: *const u32,
     triangles_len: usize,
     fields: *const *const f64,
@@ -325,7 +326,19 @@ pub unsafe extern "C" fn fixpair_bispectrum_sums_f64(
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
     code(unsafe {
-        field_sums(sums, triangles, triangles_len, fields, shells, len, brick, scratch, scratch_len, exec)
+        field_sums(
+            sums,
+            sums_len,
+            triangles,
+            triangles_len,
+            fields,
+            shells,
+            len,
+            brick,
+            scratch,
+            scratch_len,
+            exec,
+        )
     })
 }
 
@@ -336,6 +349,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_sums_f64(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_sums_f32(
     sums: *mut i64,
+    sums_len: usize,
     triangles: *const u32,
     triangles_len: usize,
     fields: *const *const f32,
@@ -348,8 +362,31 @@ pub unsafe extern "C" fn fixpair_bispectrum_sums_f32(
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
     code(unsafe {
-        field_sums(sums, triangles, triangles_len, fields, shells, len, brick, scratch, scratch_len, exec)
+        field_sums(
+            sums,
+            sums_len,
+            triangles,
+            triangles_len,
+            fields,
+            shells,
+            len,
+            brick,
+            scratch,
+            scratch_len,
+            exec,
+        )
     })
+}
+
+/// The sums of `triangles` triangles: as many, and no more.
+fn sums_of(words: &mut [i64], triangles: usize) -> Result<&mut [ExactSum]> {
+    check_words(words.len(), triangles)?;
+    Ok(ExactSum::in_words(words))
+}
+
+fn check_words(words: usize, triangles: usize) -> Result<()> {
+    let expected = triangles.checked_mul(FIXPAIR_BISPECTRUM_WORDS);
+    if expected == Some(words) { Ok(()) } else { Err(Error::Length) }
 }
 
 /// Pointers to fields that all threads read.
@@ -371,6 +408,7 @@ impl<'a, T: Real> Fields<'a, T> {
 
 unsafe fn field_sums<T: Real>(
     sums: *mut i64,
+    sums_len: usize,
     triangles: *const u32,
     triangles_len: usize,
     fields: *const *const T,
@@ -382,18 +420,19 @@ unsafe fn field_sums<T: Real>(
     exec: *const fixpair_exec,
 ) -> Result<()> {
     let mut border = Border::new();
-    // SAFETY: the caller's promise; a sum is as many integers as stated, and a triangle three numbers.
+    // SAFETY: the caller's promise; a triangle is three numbers.
     unsafe {
-        let sums = border.write(sums.cast::<ExactSum>(), triangles_len)?;
+        let words = border.write(sums, sums_len)?;
         let starts = border.read(fields, shells)?;
         for &start in starts {
             // More fields than a border has room for: each is compared with what is written.
             let mut border = Border::new();
-            border.strided(sums.as_mut_ptr(), 1, triangles_len)?;
+            border.strided(sums, 1, sums_len)?;
             border.strided(scratch.cast::<u8>(), 1, scratch_len)?;
             border.read_optional(start, len)?;
         }
         let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
+        let sums = sums_of(words, triangles_len)?;
         let missing = |&shell: &u32| starts.get(shell as usize).is_some_and(|start| start.is_null());
         if len > 0 && triangles.iter().flatten().any(missing) {
             return Err(Error::Null);
@@ -509,7 +548,7 @@ unsafe fn whole_scratch<H: Hook>(
 /// triangles 20 meshes take 116 transforms, 10 meshes 408, 3 meshes 5474. The bits do not depend on it. Where fft holds a
 /// part of the mesh, all processes call with as many meshes and the same triangles, and add their sums.
 ///
-/// In/Out: sums        FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first
+/// In/Out: sums        sums_len = FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first
 /// Out:    transforms  how many it took; or NULL
 /// In:     triangles   3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
 ///         edges       edges_len increasing values of |n|^2: shell s holds edges[s] <= |n|^2 < edges[s+1]; the last at most (n/2)^2
@@ -528,6 +567,7 @@ unsafe fn whole_scratch<H: Hook>(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_f64(
     sums: *mut i64,
+    sums_len: usize,
     transforms: *mut usize,
     triangles: *const u32,
     triangles_len: usize,
@@ -546,6 +586,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_f64(
     code(unsafe {
         whole(
             sums,
+            sums_len,
             transforms,
             triangles,
             triangles_len,
@@ -570,6 +611,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_f64(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_f32(
     sums: *mut i64,
+    sums_len: usize,
     transforms: *mut usize,
     triangles: *const u32,
     triangles_len: usize,
@@ -588,6 +630,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_f32(
     code(unsafe {
         whole(
             sums,
+            sums_len,
             transforms,
             triangles,
             triangles_len,
@@ -607,6 +650,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_f32(
 
 unsafe fn whole<H: Hook>(
     sums: *mut i64,
+    sums_len: usize,
     transforms: *mut usize,
     triangles: *const u32,
     triangles_len: usize,
@@ -622,14 +666,15 @@ unsafe fn whole<H: Hook>(
     exec: *const fixpair_exec,
 ) -> Result<()> {
     let mut border = Border::new();
-    // SAFETY: the caller's promise; a sum is as many integers as stated, and a triangle three numbers.
+    // SAFETY: the caller's promise; a triangle is three numbers.
     unsafe {
-        let sums = border.write(sums.cast::<ExactSum>(), triangles_len)?;
+        let words = border.write(sums, sums_len)?;
         let transforms = border.write(transforms, usize::from(!transforms.is_null()))?;
         let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
         let edges = border.read(edges, edges_len)?;
         let modes = border.read(modes, len)?;
         let mut fft = HostFft::new(&mut border, fft)?;
+        let sums = sums_of(words, triangles_len)?;
         let fields = border.write(fields, fields_len)?;
         let scratch = border.scratch(scratch, scratch_len)?;
         let exec = HostExec::new(&mut border, exec)?;
@@ -641,24 +686,25 @@ unsafe fn whole<H: Hook>(
 
 /// The sums of triangles as numbers, each rounded once.
 ///
-/// Out: values  len numbers: sum over cells of D_i D_j D_k
-/// In:  sums    FIXPAIR_BISPECTRUM_WORDS * len integers
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE if a sum lost a term that was not finite
+/// Out: values  values_len numbers, one a triangle: sum over cells of D_i D_j D_k
+/// In:  sums    sums_len = FIXPAIR_BISPECTRUM_WORDS * values_len integers
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_NOT_FINITE if a sum lost a term that was not finite
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_values(
     values: *mut f64,
+    values_len: usize,
     sums: *const i64,
-    len: usize,
+    sums_len: usize,
 ) -> fixpair_status_t {
     code((|| {
         let mut border = Border::new();
-        // SAFETY: the caller's promise; a sum is as many integers as stated.
-        let (values, sums) =
-            unsafe { (border.write(values, len)?, border.read(sums.cast::<ExactSum>(), len)?) };
-        bispectrum::bispectrum_values(values, sums)
+        // SAFETY: the caller's promise.
+        let (values, words) = unsafe { (border.write(values, values_len)?, border.read(sums, sums_len)?) };
+        check_words(sums_len, values_len)?;
+        bispectrum::bispectrum_values(values, ExactSum::of_words(words))
     })())
 }
 
@@ -783,6 +829,7 @@ mod tests {
             let add = |triangles: &[u32; 6], sums: *mut i64, len: usize| {
                 fixpair_bispectrum_sums_f64(
                     sums,
+                    2 * FIXPAIR_BISPECTRUM_WORDS,
                     triangles.as_ptr(),
                     2,
                     fields.as_ptr(),
@@ -800,7 +847,10 @@ mod tests {
             assert_eq!(add(&missing, words, mesh.len()), Error::Length.code());
             assert_eq!(add(&good, words, mesh.len() - 3), Error::Length.code());
             assert_eq!(add(&good, mesh.as_ptr().cast_mut().cast(), mesh.len()), Error::Overlap.code());
-            assert_eq!(fixpair_bispectrum_values(values.as_mut_ptr(), words, 2), 0);
+            assert_eq!(
+                fixpair_bispectrum_values(values.as_mut_ptr(), 2, words, 2 * FIXPAIR_BISPECTRUM_WORDS),
+                0
+            );
         }
         assert_eq!(values, [expected; 2]);
     }

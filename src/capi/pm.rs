@@ -97,7 +97,7 @@ unsafe fn positions<'a, P: Places>(border: &mut Border, pointer: *const P) -> Re
 }
 
 /// Cells, which may run over the edge of the mesh.
-fn region(brick: &fixpair_brick) -> Result<Region> {
+pub(super) fn region(brick: &fixpair_brick) -> Result<Region> {
     if super::mesh::space(brick.space)? != Space::Configuration {
         return Err(Error::Brick);
     }
@@ -109,8 +109,8 @@ fn region(brick: &fixpair_brick) -> Result<Region> {
 /// The particles are those with start H <= x < (start + count) H, H = L/n; a rounding error beyond counts as inside. Planes before and
 /// after: NGP 0 and 1, CIC 0 and 1, TSC 1 and 2, PCS 1 and 2 for mesh points at i H; NGP 0 and 0, CIC 1 and 1, TSC 1 and 1, PCS 2
 /// and 2 at (i + 1/2) H. If they meet round the mesh, the axis is whole. The result may run over the edge of the mesh: on each
-/// axis it holds the cells (start + a) mod n, 0 <= a < count. fixpair_deposit, fixpair_read_out, fixpair_add_cells and fixpair_copy_cells take such
-/// bricks, other functions do not. Its cells lie close together, z fastest: its array has count[0] count[1] count[2] reals.
+/// axis it holds the cells (start + a) mod n, 0 <= a < count. fixpair_deposit, fixpair_read_out, fixpair_add_cells, fixpair_copy_cells and
+/// fixpair_brick_reals take such bricks, other functions do not. Its cells lie close together, z fastest: its array has count[0] count[1] count[2] reals.
 ///
 /// Out: ghosted
 /// In:  brick   of configuration space: the cells that this process owns
@@ -201,7 +201,7 @@ unsafe fn query(
 /// taken. With n below p its cells wrap onto each other. The result is the same, bit for bit, on any number of threads; regions that share cells
 /// agree to rounding.
 ///
-/// Out: mesh      mesh_len reals on the region, added to: set them to zero first
+/// In/Out: mesh   mesh_len reals on the region, added to: set them to zero first
 /// In:  region    of configuration space; may run over the edge (fixpair_brick_with_ghosts)
 ///      position
 ///      weights   of particle i at weights[i * weights_stride]; NULL for 1 each
@@ -497,7 +497,7 @@ unsafe fn read_mesh<P: Places>(
 ///
 /// A plane goes straight to its owner, so slabs may be thinner than their ghosts.
 ///
-/// Out: target         target_len reals, added to where both regions hold a cell, else untouched
+/// In/Out: target      target_len reals, added to where both regions hold a cell, else untouched
 /// In:  target_region  of configuration space; may run over the edge
 ///      source         source_len reals
 ///      source_region  the same, of a mesh of the same n
@@ -545,7 +545,7 @@ pub unsafe extern "C" fn fixpair_add_cells_f32(
 ///
 /// It is the way back of fixpair_add_cells_f64: owners send the planes, and the receiver copies them into its slab with ghosts.
 ///
-/// Out: target         target_len reals, overwritten where both regions hold a cell, else untouched
+/// In/Out: target      target_len reals, overwritten where both regions hold a cell, else untouched
 /// In:  target_region, source, source_region, exec  as fixpair_add_cells_f64
 /// Returns: as fixpair_add_cells_f64
 /// Cost: one pass over the shared cells

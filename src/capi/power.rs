@@ -9,7 +9,7 @@ use super::mesh::fixpair_brick;
 use super::status::{code, fixpair_status_t};
 use crate::estimate::binning::Bin;
 use crate::estimate::compensation::{Compensation, compensate, compensate_scratch};
-use crate::estimate::power::{power_sums, power_sums_scratch, shot_noise, subtract_shot_noise};
+use crate::estimate::power::{power_sums, power_sums_scratch, shot_noise_of, subtract_shot_noise};
 use crate::pm::Window;
 use crate::real::Real;
 use crate::scratch::Layout;
@@ -104,7 +104,7 @@ pub unsafe extern "C" fn fixpair_power_sums_scratch(
 ///
 /// In/out: sums          sums_len integers, zeros at first
 /// In:     fields        fields_len <= 8 pointers to modes on the brick, len reals each
-///         pairs         pairs_len pairs of field numbers: {0, 0} for the spectrum of the first, {0, 1} for its cross spectrum with the second
+///         pairs         2 pairs_len numbers of fields: {0, 0, 0, 1} for the spectrum of the first and its cross spectrum with the second
 ///         compensation  one for each field: FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_CIC and so on; NULL for none
 ///         brick         of Fourier space
 ///         binning
@@ -124,7 +124,7 @@ pub unsafe extern "C" fn fixpair_power_sums_f64(
     fields: *const *const f64,
     fields_len: usize,
     len: usize,
-    pairs: *const [usize; 2],
+    pairs: *const usize,
     pairs_len: usize,
     compensation: *const i32,
     brick: *const fixpair_brick,
@@ -164,7 +164,7 @@ pub unsafe extern "C" fn fixpair_power_sums_f32(
     fields: *const *const f32,
     fields_len: usize,
     len: usize,
-    pairs: *const [usize; 2],
+    pairs: *const usize,
     pairs_len: usize,
     compensation: *const i32,
     brick: *const fixpair_brick,
@@ -199,7 +199,7 @@ unsafe fn add<T: Real>(
     fields: *const *const T,
     fields_len: usize,
     len: usize,
-    pairs: *const [usize; 2],
+    pairs: *const usize,
     pairs_len: usize,
     compensation: *const i32,
     brick: *const fixpair_brick,
@@ -209,11 +209,11 @@ unsafe fn add<T: Real>(
     exec: *const fixpair_exec,
 ) -> Result<()> {
     let mut border = Border::new();
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller's promise; a pair is two numbers.
     unsafe {
         let sums = border.write(sums, sums_len)?;
         let (fields, count) = self::fields(&mut border, fields, fields_len, len)?;
-        let pairs = border.read(pairs, pairs_len)?;
+        let pairs = border.read(pairs.cast::<[usize; 2]>(), pairs_len)?;
         let mut chosen = [Compensation::None; FIELDS];
         for (chosen, value) in
             chosen.iter_mut().zip(border.read_optional(compensation, count)?.unwrap_or(&[]))
@@ -231,11 +231,11 @@ unsafe fn add<T: Real>(
 /// The shot noise of particles: V sum w^2/(sum w)^2, or V/N without weights, V = L^3.
 ///
 /// Out: noise      in the unit of L^3
-/// In:  weights    one for each particle; NULL for equal weights
+/// In:  weights    of particle i at weights[i * weights_stride]; NULL, with a stride of 0, for equal weights
 ///      particles  how many
 ///      box_size   L
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive, no particles, or weights
-///          that sum to 0
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive, no particles,
+///          weights that sum to 0, or weights with a stride of 0
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -243,11 +243,12 @@ unsafe fn add<T: Real>(
 pub unsafe extern "C" fn fixpair_shot_noise_f64(
     noise: *mut f64,
     weights: *const f64,
-    particles: u64,
+    weights_stride: usize,
+    particles: usize,
     box_size: f64,
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
-    code(unsafe { noise_of(noise, weights, particles, box_size) })
+    code(unsafe { noise_of(noise, weights, weights_stride, particles, box_size) })
 }
 
 /// fixpair_shot_noise_f64 for weights in single precision.
@@ -258,20 +259,34 @@ pub unsafe extern "C" fn fixpair_shot_noise_f64(
 pub unsafe extern "C" fn fixpair_shot_noise_f32(
     noise: *mut f64,
     weights: *const f32,
-    particles: u64,
+    weights_stride: usize,
+    particles: usize,
     box_size: f64,
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
-    code(unsafe { noise_of(noise, weights, particles, box_size) })
+    code(unsafe { noise_of(noise, weights, weights_stride, particles, box_size) })
 }
 
-unsafe fn noise_of<T: Real>(noise: *mut f64, weights: *const T, particles: u64, box_size: f64) -> Result<()> {
+unsafe fn noise_of<T: Real>(
+    noise: *mut f64,
+    weights: *const T,
+    weights_stride: usize,
+    particles: usize,
+    box_size: f64,
+) -> Result<()> {
     let mut border = Border::new();
-    let count =
-        if weights.is_null() { 0 } else { usize::try_from(particles).map_err(|_| Error::Overflow)? };
     // SAFETY: the caller's promise.
-    let (noise, weights) = unsafe { (border.write_one(noise)?, border.read_optional(weights, count)?) };
-    *noise = shot_noise(weights, particles, box_size)?;
+    let noise = unsafe { border.write_one(noise)? };
+    let weighted = !weights.is_null();
+    if weighted {
+        if weights_stride == 0 {
+            return Err(Error::Range);
+        }
+        border.read_strided(weights, weights_stride, particles)?;
+    }
+    // SAFETY: these lie in memory, aligned (checked at the border); the rest is the caller's promise.
+    let weight = |i: usize| unsafe { *weights.add(i * weights_stride) }.to_f64();
+    *noise = shot_noise_of(weighted.then(|| (0..particles).map(weight)), particles as u64, box_size)?;
     Ok(())
 }
 
@@ -281,7 +296,7 @@ unsafe fn noise_of<T: Real>(noise: *mut f64, weights: *const T, particles: u64, 
 /// well below the Nyquist frequency.
 ///
 /// In/out: values  values_len numbers: the normalised spectra of all pairs
-/// In:     pairs   pairs_len pairs of field numbers
+/// In:     pairs   2 pairs_len numbers of fields
 ///         bins    bins_len bins; empty ones stay 0
 ///         orders  as in the binning
 ///         noise   noise_len values: of each field
@@ -293,7 +308,7 @@ unsafe fn noise_of<T: Real>(noise: *mut f64, weights: *const T, particles: u64, 
 pub unsafe extern "C" fn fixpair_subtract_shot_noise(
     values: *mut f64,
     values_len: usize,
-    pairs: *const [usize; 2],
+    pairs: *const usize,
     pairs_len: usize,
     bins: *const Bin,
     bins_len: usize,
@@ -303,10 +318,11 @@ pub unsafe extern "C" fn fixpair_subtract_shot_noise(
 ) -> fixpair_status_t {
     code((|| {
         let mut border = Border::new();
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's promise; a pair is two numbers.
         unsafe {
             let values = border.write(values, values_len)?;
-            let (pairs, bins) = (border.read(pairs, pairs_len)?, border.read(bins, bins_len)?);
+            let pairs = border.read(pairs.cast::<[usize; 2]>(), pairs_len)?;
+            let bins = border.read(bins, bins_len)?;
             subtract_shot_noise(values, pairs, bins, orders, border.read(noise, noise_len)?)
         }
     })())
