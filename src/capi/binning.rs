@@ -93,7 +93,7 @@ pub(super) unsafe fn binning<'a>(
 ///
 /// Out: binning  refers to the edges, which have to stay where they are
 /// In:  edges    edges_len increasing values of |n|^2, see fixpair_edges_uniform and its neighbours
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _TABLE
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _TABLE
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -197,8 +197,9 @@ pub unsafe extern "C" fn fixpair_binning_read(
 
 /// Turns sums into multipoles: value_l <- (2l + 1) factor value_l / count, and 0 in empty bins.
 ///
-/// For P_l in (Mpc/h)^3 the factor is L^3 s^2, where s makes the modes those of f(x) = sum_k f_k exp(+i k.x): 1/n^3 after an un-normalised transform
-/// of an overdensity. For xi_l it is 1. The variance of P_0 of a Gaussian field is 2 P^2/count.
+/// For P_l in (Mpc/h)^3 the factor is L^3 times the scale of either field, what makes its modes those of f(x) = sum_k f_k exp(+i k.x): L^3/(sum of
+/// weights)^2 for the density contrast of a deposit, L^3/n^6 for any other field (both after a transform that does not divide), L^3 for modes of this
+/// library and those that fixpair_compensate_f64 brought to scale. For xi_l it is 1. The variance of P_0 of a Gaussian field is 2 P^2/count.
 ///
 /// In/out: values  values_len numbers of one or more spectra
 /// In:     bins    bins_len bins
@@ -231,7 +232,7 @@ pub unsafe extern "C" fn fixpair_binning_normalise(
 ///
 /// Out: edges  edges_len integers
 /// In:  first, width
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _NOT_FINITE, FIXPAIR_ERROR_RANGE for edges below 0 or from 4e9 on, FIXPAIR_ERROR_TABLE for
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for edges below 0 or from 4e9 on, FIXPAIR_ERROR_TABLE for
 ///          fewer than two edges or edges that do not increase as integers; nothing is then written
 ///
 /// # Safety

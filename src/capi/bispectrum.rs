@@ -24,7 +24,8 @@ const _: () = assert!(FIXPAIR_BISPECTRUM_WORDS == ExactSum::WORDS);
 /// Out: count
 /// In:  edges    edges_len increasing values of |n|^2, n = k L/(2 pi): shell s holds the modes edges[s] <= |n|^2 < edges[s+1]
 ///      centres  edges_len - 1 increasing numbers >= 0, or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_TABLE for edges or centres that do not increase, FIXPAIR_ERROR_NOT_FINITE for centres
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_TABLE for edges or centres that do not increase or centres
+///          below 0, FIXPAIR_ERROR_NOT_FINITE for centres
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -56,7 +57,7 @@ pub unsafe extern "C" fn fixpair_closed_triangle_count(
 ///
 /// Out: triangles  3 triangles_len numbers, triangles_len from fixpair_closed_triangle_count
 /// In:  edges, centres as fixpair_closed_triangle_count
-/// Returns: 0, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_OVERLAP, or as fixpair_closed_triangle_count
+/// Returns: 0, FIXPAIR_ERROR_LENGTH for any other triangles_len, or as fixpair_closed_triangle_count
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -85,7 +86,7 @@ pub unsafe extern "C" fn fixpair_closed_triangles(
 /// Out: triangles  3 triangles_len numbers, triangles_len = shells - shell
 /// In:  shell      counted from 0
 ///      shells     how many there are
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_RANGE unless shell < shells
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERFLOW, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_RANGE unless shell < shells
 ///
 /// # Safety
 /// `triangles` is null or points to as many values as stated.
@@ -248,7 +249,7 @@ unsafe fn shell<T: Real>(
 /// In:  brick          of configuration space
 ///      shells         S
 ///      triangles_len  T
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the brick is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, or why the brick is refused
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -451,7 +452,7 @@ unsafe fn field_sums<T: Real>(
 /// Out: reals
 /// In:  fft
 ///      count
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the hook is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, or why the hook is refused
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -495,7 +496,7 @@ unsafe fn meshes<H: Hook>(reals: *mut usize, fft: *const H, count: usize) -> Res
 /// Out: scratch
 /// In:  fft
 ///      shells, triangles_len  how many there are
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the hook is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, or why the hook is refused
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -542,10 +543,21 @@ unsafe fn whole_scratch<H: Hook>(
 }
 
 /// From modes to the sums of all triangles of a list: what fixpair_bispectrum_sums_f64 adds, with the shells' transforms, in as much memory as
-/// there is.
+/// there is. The whole way, for a deposit of weights whose sum is W:
+///
+///     fixpair_squeezed_triangles(triangles, T, 0, edges_len - 1);    T = edges_len - 1; or fixpair_closed_triangles
+///     fixpair_triangle_counts(counts, triangles, T, edges, edges_len, n, ...);    once: save counts with triangles, edges and n
+///     fixpair_compensate_f64(modes, len, FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC, 1.0/W, &fft.fourier, ...);
+///     fixpair_bispectrum_f64(sums, words, NULL, triangles, T, edges, edges_len, modes, ...);    then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
+///     fixpair_bispectrum_values(B, T, sums, words);
+///     fixpair_bispectrum_normalise(B, counts, T, n, L, 1.0);
+///
+/// P of the same shells, which fixpair_bispectrum_shot_noise and fixpair_bispectrum_reduced take, comes from fixpair_power_sums_f64: edges as here,
+/// and FIXPAIR_COMPENSATION_NONE for modes that are compensated already. Every transform is a call of fft: in a long call a hook that counts its
+/// calls can tell how far it is.
 ///
 /// With a mesh for each shell each shell is transformed once. With fewer, at least 3, shells come and go: for 40 shells and all their
-/// triangles 20 meshes take 116 transforms, 10 meshes 408, 3 meshes 5474. The bits do not depend on it. Where fft holds a
+/// triangles 40 meshes take 40 transforms, 20 meshes 116, 10 meshes 408, 3 meshes 5474. The bits do not depend on it. Where fft holds a
 /// part of the mesh, all processes call with as many meshes and the same triangles, and add their sums.
 ///
 /// In/Out: sums        sums_len = FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first
@@ -714,7 +726,9 @@ pub unsafe extern "C" fn fixpair_bispectrum_values(
 /// In:     counts    len counts of fixpair_triangle_counts
 ///         n         cells on a side of the mesh
 ///         box_size  L; B comes in its unit to the sixth power
-///         scale     what the modes have yet to be multiplied by: 1, or 1/n^3 after a forward transform that does not divide
+///         scale     of the field, which enters three times: what makes its modes those of f(x) = sum_k f_k exp(+i k.x). 1/(sum of weights) for the
+///                   density contrast of a deposit, 1/n^3 for any other field (both after a transform that does not divide), 1 for
+///                   modes of this library and those that fixpair_compensate_f64 brought to scale
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_MESH_SIZE for n = 0, FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_RANGE for a
 ///          box that is not positive or a result that overflows
 ///

@@ -80,7 +80,7 @@ unsafe fn put(out: *mut fixpair_brick, brick: impl FnOnce() -> Result<Brick>) ->
 ///      space    FIXPAIR_SPACE_CONFIGURATION or FIXPAIR_SPACE_FOURIER
 ///      padding  unused modes (twice as many reals) after each x plane: 0, or fixpair_fft_padding_f64(n) to be faster where
 ///               n is a power of two; the same for both spaces
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_MESH_SIZE, FIXPAIR_ERROR_CHOICE, FIXPAIR_ERROR_OVERFLOW
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _MESH_SIZE, _CHOICE, _OVERFLOW
 ///
 /// # Safety
 /// `brick` is null or points to a brick.

@@ -116,7 +116,7 @@ pub(super) fn region(brick: &fixpair_brick) -> Result<Region> {
 /// In:  brick   of configuration space: the cells that this process owns
 ///      window  FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS
 ///      shift   of the mesh points, in cells: 0, or 1/2 for the second mesh of interlacing; 0 <= shift < 1
-/// Returns: 0, FIXPAIR_ERROR_NULL, _CHOICE, _RANGE, _NOT_FINITE, or why the brick is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _CHOICE, _RANGE, _NOT_FINITE, or why the brick is refused
 ///
 /// # Safety
 /// Pointers are null or point to one brick.
@@ -150,7 +150,7 @@ pub unsafe extern "C" fn fixpair_brick_with_ghosts(
 /// In:  region     of configuration space; may run over the edge
 ///      particles  as many as will be passed, or more
 ///      window     FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS
-/// Returns: 0, FIXPAIR_ERROR_NULL, _CHOICE, _OVERFLOW, or why the region is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _CHOICE, or why the region is refused
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -210,9 +210,9 @@ unsafe fn query(
 ///      shift     mesh point i lies at (i + shift) L/n: 0, or 1/2 for the second mesh of interlacing; 0 <= shift < 1
 ///      scratch   scratch_len bytes, see fixpair_deposit_scratch_f64
 ///      exec      or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _CHOICE, _SCRATCH, or why the region is refused; FIXPAIR_ERROR_NOT_FINITE
-///          for box_size and shift, or for a position or weight, after which, as after FIXPAIR_ERROR_OUTSIDE, the mesh holds some of the
-///          particles; after FIXPAIR_ERROR_HOOK it is undefined
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE, _CHOICE, _SCRATCH, or why the region is refused;
+///          FIXPAIR_ERROR_NOT_FINITE for box_size and shift, or for a position or weight, after which, as after FIXPAIR_ERROR_OUTSIDE, the
+///          mesh holds some of the particles; after FIXPAIR_ERROR_HOOK it is undefined
 /// Cost: on one core in single precision 16 (NGP) to 55 ns (PCS) a particle if neighbours in memory are neighbours in space, 31 to 82 ns in
 ///       random order
 ///
@@ -332,7 +332,7 @@ unsafe fn add_particles<P: Places>(
 /// In:  region     of configuration space; may run over the edge
 ///      particles  as many as will be passed, or more
 ///      window     FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS
-/// Returns: 0, FIXPAIR_ERROR_NULL, _CHOICE, _OVERFLOW, or why the region is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _CHOICE, or why the region is refused
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -609,6 +609,10 @@ unsafe fn shared<T: Real>(
 
 /// Interlacing: modes become (modes + exp(-i k.H/2) shifted)/2, H = (L/n)(1, 1, 1), in which images of the field displaced by an odd number of
 /// mesh wavenumbers 2 pi n/L cancel (Sefusatti et al. 2016, arXiv:1512.07295).
+///
+/// Even images stay. Where particles are near their lattice, as in initial conditions, these are in step with the signal, and windows of odd order
+/// p leave an error of order (kH)^(p-1), H = L/n: with 64^3 particles at z = 32 in a box of 1000 Mpc/h on 128^3 cells TSC has 1.1% too much P at
+/// k = 0.1 h/Mpc and 4.5% at 0.2. PCS is within 0.1% there: prefer it for such particles.
 ///
 /// A mode with a number n/2 stands for +n/2 and -n/2, odd images of each other. It becomes modes/2, the mean of both, so that the field
 /// remains real.

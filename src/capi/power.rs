@@ -58,8 +58,11 @@ pub(super) unsafe fn fields<'a, T>(
     Ok((out, count))
 }
 
-/// Scratch of fixpair_power_sums_*: partial sums for at most 64 pieces of the work, or 64 MiB of them (two pieces if one is more); 4 bytes for each |n|^2
-/// below the last edge (at most 3 (n/2)^2 + 1 of them) and for each of 2 (n/2)^2 + 1 squares of (i, j); and a few rows for each piece and pair.
+/// Scratch of fixpair_power_sums_*, in bytes. For each of w pieces of the work: 8 words, words from fixpair_binning_lengths; 128 for each bin, pair and
+/// parity (even, odd) that orders has; and 192 for each l of the brick; and at most 512. Besides: 4 for each |n|^2 below the last edge (at most
+/// 3 (n/2)^2 + 1 of them); 4 for each of 2 (n/2)^2 + 1 values of i^2 + j^2, unless a second coordinate has a line of sight other than z; 24 for each l; for each pair 8 for each
+/// l and 4 n; 8 for each second edge; and a few cache lines. w is at most 64, and at most as many as have 64 MiB of words together, or 2; for the
+/// whole mesh it is at most n/2 + 1.
 ///
 /// Out: scratch
 /// In:  brick      of Fourier space
@@ -97,7 +100,7 @@ pub unsafe extern "C" fn fixpair_power_sums_scratch(
 ///     int64_t *sums = calloc(words, sizeof *sums);         see fixpair_binning_lengths
 ///     fixpair_power_sums_f64(sums, words, ...);            on each rank, then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
 ///     fixpair_binning_read(bins, bins_len, P, P_len, sums, words, &binning, pairs_len);
-///     fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);
+///     fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);    L*L*L/(W*W) for a deposit whose weights sum to W
 ///     fixpair_subtract_shot_noise(P, P_len, pairs, pairs_len, bins, bins_len, binning.orders, &noise, 1);    if wanted
 ///
 /// The bits do not depend on threads or on how the mesh is cut along x or y; bricks that cut axis 2 agree to rounding.
@@ -357,7 +360,8 @@ pub unsafe extern "C" fn fixpair_compensate_scratch(
 ///
 /// In/out: modes         len reals
 /// In:     compensation  FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC and so on
-///         scale         of the field: 1/(sum of weights) makes a transformed deposit its density contrast; 1 leaves it
+///         scale         of the field: what makes its modes those of f(x) = sum_k f_k exp(+i k.x). 1/(sum of weights) for the density contrast of a
+///                       deposit, 1/n^3 for any other field (both after a transform that does not divide), 1 for modes of this library
 ///         brick         of Fourier space
 ///         scratch       scratch_len bytes, see fixpair_compensate_scratch
 ///         exec          or NULL
