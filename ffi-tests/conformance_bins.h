@@ -22,7 +22,7 @@ static fixpair_binning wedge_binning(void) {
     binning.second = FIXPAIR_SECOND_COSINE;
     binning.second_edges = wedges;
     binning.second_edges_len = 5;
-    binning.orders = 3;
+    binning.orders = FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_1;
     return binning;
 }
 
@@ -34,12 +34,15 @@ static uint64_t hash_sizes(uint64_t hash, size_t number) {
 static void ghosts(void) {
     fixpair_brick slab, ghosted;
     uint64_t hash = HASH_START;
+    size_t reals;
     int32_t window;
     int half, axis;
     MUST(fixpair_brick_slab(&slab, N, FIXPAIR_SPACE_CONFIGURATION, 5, 7));
     for (window = FIXPAIR_WINDOW_NGP; window <= FIXPAIR_WINDOW_PCS; window++) {
         for (half = 0; half < 2; half++) {
             MUST(fixpair_brick_with_ghosts(&ghosted, &slab, window, half ? 0.5 : 0.0));
+            MUST(fixpair_brick_reals(&reals, &ghosted));
+            CHECK(reals == ghosted.count[0] * ghosted.count[1] * ghosted.count[2]);
             hash = hash_sizes(hash, ghosted.n);
             for (axis = 0; axis < 3; axis++) {
                 hash = hash_sizes(hash, ghosted.start[axis]);

@@ -4,7 +4,7 @@
 
 /* Bins and values of sums, which it gives back. */
 static uint64_t X(read)(uint64_t hash, int64_t *sums, size_t sums_len, const fixpair_binning *binning, size_t spectra,
-                        double factor, const size_t (*pairs)[2]) {
+                        double factor, const size_t *pairs) {
     const double noises[2] = {1.5, 2.5};
     size_t bins_len, values_len, words;
     fixpair_bin *bins;
@@ -28,7 +28,7 @@ static uint64_t X(read)(uint64_t hash, int64_t *sums, size_t sums_len, const fix
 }
 
 /* The sums of spectra of f and g on the whole mesh, which those of two slabs have to be too. */
-static int64_t *X(sums)(const REAL *const *fields, size_t length, const size_t (*pairs)[2], size_t pairs_len,
+static int64_t *X(sums)(const REAL *const *fields, size_t length, const size_t *pairs, size_t pairs_len,
                         const int32_t *compensation, const fixpair_brick *brick, const fixpair_binning *binning,
                         fixpair_layout *layout, size_t *words, const fixpair_exec *exec) {
     const size_t plane = 2 * brick->stride[0];
@@ -65,14 +65,14 @@ static int64_t *X(sums)(const REAL *const *fields, size_t length, const size_t (
 
 static void X(powers)(const REAL *f, const REAL *g, size_t length, const fixpair_brick *brick,
                       const fixpair_exec *exec) {
-    static const size_t pairs[2][2] = {{0, 0}, {0, 1}}, more[3][2] = {{0, 0}, {1, 1}, {1, 0}};
+    static const size_t pairs[] = {0, 0, 0, 1}, more[] = {0, 0, 1, 1, 1, 0};
     static const int32_t aliased[2] = {FIXPAIR_COMPENSATION_NONE, FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_CIC};
     static const int32_t windows[2] = {FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC,
                                        FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC};
     const REAL *fields[2];
     fixpair_binning binning, second = wedge_binning();
     fixpair_layout layout;
-    REAL *weights = X(reals)(500);
+    REAL *weights = X(reals)(1500);
     double noises[2];
     int64_t *sums;
     size_t words, i;
@@ -80,7 +80,7 @@ static void X(powers)(const REAL *f, const REAL *g, size_t length, const fixpair
     fields[1] = g;
     MUST(fixpair_binning_init(&binning, edges, EDGES));
     binning.axis[2] = 2.0;
-    binning.orders = 21;
+    binning.orders = FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_2 | FIXPAIR_MULTIPOLE_4;
     sums = X(sums)(fields, length, pairs, 2, aliased, brick, &binning, &layout, &words, exec);
     check_named("power_sums", "", SUFFIX,
                 hash_bytes(hash_layout(HASH_START, layout), sums, words * sizeof *sums));
@@ -89,12 +89,33 @@ static void X(powers)(const REAL *f, const REAL *g, size_t length, const fixpair
     check_named("power", ".wedges", SUFFIX,
                 X(read)(hash_bytes(HASH_START, sums, words * sizeof *sums), sums, words, &second, 3, 0.0, NULL));
     for (i = 0; i < 500; i++) {
-        weights[i] = (REAL)(1.25 + noise(5 * i));
+        weights[3 * i] = (REAL)(1.25 + noise(5 * i));
     }
-    MUST(X(fixpair_shot_noise)(&noises[0], weights, 500, BOX));
-    MUST(X(fixpair_shot_noise)(&noises[1], NULL, 500, BOX));
+    MUST(X(fixpair_shot_noise)(&noises[0], weights, 3, 500, BOX));
+    MUST(X(fixpair_shot_noise)(&noises[1], NULL, 0, 500, BOX));
     check_named("shot_noise", "", SUFFIX, hash_bytes(HASH_START, noises, sizeof noises));
     give_back(weights);
+}
+
+static void X(compensations)(const REAL *f, size_t length, const fixpair_brick *brick, const fixpair_exec *exec) {
+    REAL *modes = X(reals)(length);
+    fixpair_layout layout;
+    uint64_t hash;
+    void *scratch;
+    int aliased;
+    MUST(fixpair_compensate_scratch(&layout, brick));
+    scratch = take(layout.size);
+    hash = hash_layout(HASH_START, layout);
+    memcpy(modes, f, length * sizeof(REAL));
+    for (aliased = 0; aliased < 2; aliased++) {
+        int32_t compensation = aliased ? FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_PCS
+                                       : FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC;
+        MUST(X(fixpair_compensate)(modes, length, compensation, aliased ? -2.0 : 0.3, brick, scratch, layout.size, exec));
+        hash = hash_brick(hash, modes, brick, sizeof(REAL));
+    }
+    check_named("compensate", "", SUFFIX, hash);
+    give_back(scratch);
+    give_back(modes);
 }
 
 static void X(correlations)(const REAL *f, const REAL *g, size_t length, const fixpair_brick *brick,
@@ -145,7 +166,7 @@ static void X(correlations)(const REAL *f, const REAL *g, size_t length, const f
 
 static void X(bispectra)(const REAL *modes, size_t length, const X(fixpair_fft) *fft, const fixpair_exec *exec) {
     static const double power[SHELLS] = {100.0, 200.0, 300.0, 400.0, 500.0};
-    const size_t size = triangles_len * FIXPAIR_BISPECTRUM_WORDS * sizeof(int64_t), plane = fft->configuration.stride[0];
+    const size_t words = triangles_len * FIXPAIR_BISPECTRUM_WORDS, size = words * sizeof(int64_t), plane = fft->configuration.stride[0];
     double values[TRIANGLES], noises[TRIANGLES], reduced[TRIANGLES];
     int64_t *sums = (int64_t *)take(size), *again = (int64_t *)take(size);
     REAL *shells[SHELLS];
@@ -164,7 +185,7 @@ static void X(bispectra)(const REAL *modes, size_t length, const X(fixpair_fft) 
     MUST(X(fixpair_bispectrum_sums_scratch)(&layout, &fft->configuration, SHELLS, triangles_len));
     sizes = hash_layout(sizes, layout);
     scratch = take(layout.size);
-    MUST(X(fixpair_bispectrum_sums)(sums, triangles, triangles_len, fields, SHELLS, length, &fft->configuration,
+    MUST(X(fixpair_bispectrum_sums)(sums, words, triangles, triangles_len, fields, SHELLS, length, &fft->configuration,
                                     scratch, layout.size, exec));
     check_named("bispectrum_sums", "", SUFFIX, hash_bytes(HASH_START, sums, size));
     for (part = 0; part < 2; part++) {
@@ -177,7 +198,7 @@ static void X(bispectra)(const REAL *modes, size_t length, const X(fixpair_fft) 
         MUST(fixpair_brick_slab(&slab, N, FIXPAIR_SPACE_CONFIGURATION, first, planes));
         MUST(X(fixpair_bispectrum_sums_scratch)(&needed, &slab, SHELLS, triangles_len));
         CHECK(needed.size <= layout.size);
-        MUST(X(fixpair_bispectrum_sums)(again, triangles, triangles_len, fields, SHELLS, planes * plane, &slab,
+        MUST(X(fixpair_bispectrum_sums)(again, words, triangles, triangles_len, fields, SHELLS, planes * plane, &slab,
                                         scratch, layout.size, exec));
     }
     CHECK(memcmp(sums, again, size) == 0);
@@ -191,7 +212,7 @@ static void X(bispectra)(const REAL *modes, size_t length, const X(fixpair_fft) 
         MUST(X(fixpair_bispectrum_meshes)(&reals, fft, (size_t)meshes));
         memory = X(reals)(reals);
         memset(again, 0, size);
-        MUST(X(fixpair_bispectrum)(again, &transforms, triangles, triangles_len, edges, SHELLS + 1, modes, length, fft,
+        MUST(X(fixpair_bispectrum)(again, words, &transforms, triangles, triangles_len, edges, SHELLS + 1, modes, length, fft,
                                    memory, reals, scratch, streaming.size, exec));
         CHECK(memcmp(sums, again, size) == 0);
         sizes = hash_sizes(hash_sizes(sizes, reals), transforms);
@@ -199,7 +220,7 @@ static void X(bispectra)(const REAL *modes, size_t length, const X(fixpair_fft) 
     }
     give_back(scratch);
     check_named("bispectrum_sizes", "", SUFFIX, sizes);
-    MUST(fixpair_bispectrum_values(values, sums, triangles_len));
+    MUST(fixpair_bispectrum_values(values, triangles_len, sums, words));
     MUST(fixpair_bispectrum_normalise(values, triangle_counts, triangles_len, N, BOX, 0.75));
     MUST(fixpair_bispectrum_shot_noise(noises, triangles, triangles_len, power, SHELLS, 3.5));
     MUST(fixpair_bispectrum_reduced(reduced, values, triangles, triangles_len, power, SHELLS));
@@ -228,6 +249,7 @@ static void X(estimates)(const fixpair_exec *exec) {
     MUST(X(fixpair_white_modes)(g, length, &transform.fft.fourier, &realisation, NULL, 0, exec));
     CHECK(length == transform.fft.length);
     X(powers)(f, g, length, &transform.fft.fourier, exec);
+    X(compensations)(f, length, &transform.fft.fourier, exec);
     X(correlations)(f, g, length, &transform.fft.fourier, &transform.fft, exec);
     X(bispectra)(f, length, &transform.fft, exec);
     give_back(f);

@@ -154,7 +154,7 @@ def particles(twin):
     own = [made(Brick, library.brick_slab, N, fixpair.CONFIGURATION, *plane) for plane in planes]
     wide = [made(Brick, library.brick_with_ghosts, brick, fixpair.PCS, 0.5) for brick in own]
     meshes = [Buffer(twin.real, twin.universe.reals(brick)) for brick in own]
-    ghosts = [Buffer(twin.real, b.count[0] * b.count[1] * b.count[2]) for b in wide]
+    ghosts = [Buffer(twin.real, twin.universe.reals(brick)) for brick in wide]
     places = [filled(twin.real, rank) for rank in ranks]
     for rank in range(2):
         deposit(twin, ghosts[rank], wide[rank], places[rank], None, fixpair.PCS, 0.5)
@@ -183,6 +183,7 @@ class Estimates:
 
     def run(self):
         self.powers()
+        self.compensations()
         self.correlations()
         self.bispectra()
 
@@ -210,10 +211,20 @@ class Estimates:
         _, sums = self.sums("power_sums", binning, both, self.brick, pairs_of((0, 0), (1, 1), (1, 0)), windows)
         self.twin.case("power.wedges", sums, *read(library, sums, binning, 3))
         weights, noises = filled(self.twin.real, [1.25 + noise(5 * i) for i in range(500)]), [c_double(), c_double()]
-        self.twin.call("shot_noise", noises[1], None, 500, BOX)
-        self.twin.call("shot_noise", noises[0], weights.start, 500, BOX)
+        self.twin.call("shot_noise", noises[1], None, 0, 500, BOX)
+        self.twin.call("shot_noise", noises[0], weights.start, 1, 500, BOX)
         check(noises[1].value == BOX**3 / 500, "equal particles have the noise V/N")
         self.twin.case("shot_noise", doubles(*(noise.value for noise in noises)))
+
+    def compensations(self):
+        layout = made(Layout, self.library.compensate_scratch, self.brick)
+        scratch, pieces = scratch_of(layout), [sizes(layout)]
+        modes = filled(self.twin.real, list(self.f.array))
+        for compensation, scale in ((fixpair.WINDOW + fixpair.TSC, 0.3), (fixpair.ALIASED + fixpair.PCS, -2.0)):
+            self.twin.call("compensate", modes.start, self.length, compensation, scale, self.brick, scratch.start,
+                           scratch.size, self.twin.run)
+            pieces.append(elements(modes, self.brick))
+        self.twin.case("compensate", *pieces)
 
     def correlations(self):
         layout = made(Layout, self.library.correlation_modes_scratch, self.brick)
@@ -249,7 +260,7 @@ class Estimates:
         second = twin.layout("bispectrum_scratch", fft, SHELLS, count)
         scratch, sums, pieces = scratch_of(first), Buffer(ctypes.c_int64, words), [sizes(first), sizes(second)]
         pointers = filled(ctypes.c_void_p, [shell.start for shell in shells])
-        twin.call("bispectrum_sums", sums.start, triangles.start, count, pointers.start, SHELLS, length, fft.configuration,
+        twin.call("bispectrum_sums", sums.start, words, triangles.start, count, pointers.start, SHELLS, length, fft.configuration,
                   scratch.start, scratch.size, twin.run)
         twin.case("bispectrum_sums", sums)
         scratch = scratch_of(second)
@@ -257,7 +268,7 @@ class Estimates:
             reals = size_t()
             twin.call("bispectrum_meshes", reals, fft, meshes)
             memory, transforms, again = Buffer(twin.real, reals.value), size_t(), Buffer(ctypes.c_int64, words)
-            twin.call("bispectrum", again.start, transforms, triangles.start, count, edges.start, SHELLS + 1, self.f.start,
+            twin.call("bispectrum", again.start, words, transforms, triangles.start, count, edges.start, SHELLS + 1, self.f.start,
                       length, fft, memory.start, reals.value, scratch.start, scratch.size, twin.run)
             check(bytes(again) == bytes(sums), f"{meshes} meshes make the same sums")
             pieces.append(integers(reals.value, transforms.value))
@@ -265,7 +276,7 @@ class Estimates:
         values, noises, reduced = (Buffer(c_double, count) for _ in range(3))
         _, counts = counts_of(library, twin.run, triangles, count, edges, N)
         power = array([100.0, 200.0, 300.0, 400.0, 500.0])
-        library.bispectrum_values(values.start, sums.start, count)
+        library.bispectrum_values(values.start, count, sums.start, words)
         library.bispectrum_normalise(values.start, counts.start, count, N, BOX, 0.75)
         library.bispectrum_shot_noise(noises.start, triangles.start, count, power.start, SHELLS, 3.5)
         library.bispectrum_reduced(reduced.start, values.start, triangles.start, count, power.start, SHELLS)

@@ -64,8 +64,9 @@ SIGNATURES = {
     "binning_init": "ppn", "binning_lengths": "ppppn", "binning_read": "pnpnpnpn", "binning_normalise": "pnpnwd",
     "edges_uniform": "pndd", "edges_wavenumbers": "ppnd", "edges_exact": "pnu", "power_sums_scratch": "pppn",
     "subtract_shot_noise": "pnpnpnwpn", "correlation_modes_scratch": "pp", "correlation_sums_scratch": "pppn",
+    "compensate_scratch": "pp",
     "closed_triangle_count": "ppnp", "closed_triangles": "pnpnp", "squeezed_triangles": "pnnn",
-    "triangle_counts_scratch": "ppnpnn", "triangle_counts": "ppnpnnpnp", "bispectrum_values": "ppn",
+    "triangle_counts_scratch": "ppnpnn", "triangle_counts": "ppnpnnpnp", "bispectrum_values": "pnpn",
     "bispectrum_normalise": "ppnndd", "bispectrum_shot_noise": "ppnpnd", "bispectrum_reduced": "pppnpn",
 }
 TWINS = {
@@ -76,9 +77,10 @@ TWINS = {
     "second_order_source": "pnpnpppppnp", "displacement": "pnpnpndpp", "displace": "ppppnpndddp",
     "deposit_scratch": "ppni", "deposit": "pnpppndidpnp", "read_out_scratch": "ppni", "read_out": "pnpnppdidpnp",
     "add_cells": "pnppnpp", "copy_cells": "pnppnpp", "interlace": "ppnpp", "power_sums": "pnpnnpnppppnp",
-    "shot_noise": "ppud", "correlation_modes": "ppniidppnp", "correlation_sums": "pnpnnpppnp",
-    "shell_modes": "ppnpuup", "bispectrum_sums_scratch": "ppnn", "bispectrum_sums": "ppnpnnppnp",
-    "bispectrum_meshes": "ppn", "bispectrum_scratch": "ppnn", "bispectrum": "pppnpnpnppnpnp",
+    "shot_noise": "ppnnd", "correlation_modes": "ppniidppnp", "correlation_sums": "pnpnnpppnp",
+    "compensate": "pnidppnp",
+    "shell_modes": "ppnpuup", "bispectrum_sums_scratch": "ppnn", "bispectrum_sums": "pnpnpnnppnp",
+    "bispectrum_meshes": "ppn", "bispectrum_scratch": "ppnn", "bispectrum": "pnppnpnpnppnpnp",
 }
 SIGNATURES.update({f"{name}_{real}": signature for name, signature in TWINS.items() for real in ("f32", "f64")})
 

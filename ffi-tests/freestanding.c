@@ -83,7 +83,7 @@ static void *room(size_t size) {
 
 /* The particles on a mesh, and what is made of it. */
 static void measure(const fixpair_fft_f32 *fft) {
-    static const size_t pairs[1][2] = {{0, 0}};
+    static const size_t pairs[] = {0, 0};
     const uint64_t edges[SHELLS + 1] = {1, 4, 16, 36};
     const int32_t compensation = FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_CIC;
     fixpair_positions_f32 places;
@@ -141,9 +141,9 @@ static void measure(const fixpair_fft_f32 *fft) {
     fields = room(length * sizeof *fields);
     must(fixpair_bispectrum_scratch_f32(&layout, fft, SHELLS, count), 26);
     scratch = piece(layout);
-    must(fixpair_bispectrum_f32(sums, NULL, triangles, count, edges, SHELLS + 1, mesh, fft->length, fft, fields, length,
+    must(fixpair_bispectrum_f32(sums, count * FIXPAIR_BISPECTRUM_WORDS, NULL, triangles, count, edges, SHELLS + 1, mesh, fft->length, fft, fields, length,
                                 scratch, layout.size, NULL), 27);
-    must(fixpair_bispectrum_values(b, sums, count), 28);
+    must(fixpair_bispectrum_values(b, count, sums, count * FIXPAIR_BISPECTRUM_WORDS), 28);
     must(fixpair_bispectrum_normalise(b, counts, count, SIDE, 1000.0, 1.0 / PARTICLES), 29);
     for (i = 0; i < count; i++) {
         if (counts[i] == 0 || b[i] == 0) {

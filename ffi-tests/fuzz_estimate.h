@@ -67,7 +67,7 @@ static void estimates(double *data, float *single, double *scratch, int64_t *sum
     double second[4], values[256] = {0.0}, noises[2];
     uint64_t edges[5], counts[4];
     uint32_t triangles[12];
-    size_t pairs[2][2], numbers[3], spectra = few(3), shells = few(5), i;
+    size_t pairs[4], numbers[3], spectra = few(3), shells = few(5), i;
     edges[0] = few(4);
     for (i = 1; i < 5; i++) {
         edges[i] = word() % 16 ? edges[i - 1] + 1 + word() % 8 : word();
@@ -79,7 +79,7 @@ static void estimates(double *data, float *single, double *scratch, int64_t *sum
         triangles[i] = word() % 32 ? (uint32_t)(word() % 4) : (uint32_t)word();
     }
     for (i = 0; i < 4; i++) {
-        pairs[i / 2][i % 2] = few(2);
+        pairs[i] = few(2);
         counts[i] = word() % 4;
     }
     binning.struct_size = sizeof binning;
@@ -105,20 +105,23 @@ static void estimates(double *data, float *single, double *scratch, int64_t *sum
         && numbers[0] <= 64 && numbers[1] <= 256 && numbers[2] <= WORDS && spectra <= 2) {
         fixpair_status_t status;
         memset(sums, 0, WORDS * sizeof *sums);
-        sane(fixpair_power_sums_f64(sums, numbers[2], fields, 2, LENGTH, (const size_t (*)[2])pairs, spectra, NULL, &b,
-                                    &binning, scratch, BYTES, NULL));
-        sane(fixpair_power_sums_f32(sums, numbers[2], narrow, 1, LENGTH, (const size_t (*)[2])pairs, spectra, NULL, &b,
-                                    &binning, scratch, BYTES, NULL));
+        sane(fixpair_power_sums_f64(sums, numbers[2], fields, 2, LENGTH, pairs, spectra, NULL, &b, &binning,
+                                    scratch, BYTES, NULL));
+        sane(fixpair_power_sums_f32(sums, numbers[2], narrow, 1, LENGTH, pairs, spectra, NULL, &b, &binning,
+                                    scratch, BYTES, NULL));
         sane(fixpair_correlation_sums_f64(sums, numbers[2], fields, spectra, LENGTH, &b, &binning, scratch, BYTES, NULL));
         status = fixpair_binning_read(bins, numbers[0], values, numbers[1], sums, numbers[2], &binning, spectra);
         sane(status);
         if (status == FIXPAIR_OK) {
             sane(fixpair_binning_normalise(values, numbers[1], bins, numbers[0], binning.orders, maybe(1.0)));
-            sane(fixpair_subtract_shot_noise(values, numbers[1], (const size_t (*)[2])pairs, spectra, bins, numbers[0],
-                                             binning.orders, noises, word() % 3));
+            sane(fixpair_subtract_shot_noise(values, numbers[1], pairs, spectra, bins, numbers[0], binning.orders, noises,
+                                             word() % 3));
         }
     }
-    sane(fixpair_shot_noise_f64(noises, data, few(LENGTH) % LENGTH, maybe(100.0)));
+    sane(fixpair_shot_noise_f64(noises, data, word() % 3, few(LENGTH) % LENGTH, maybe(100.0)));
+    sane(fixpair_compensate_scratch(&layout, &b));
+    sane(fixpair_compensate_f64(data, LENGTH, word() % 2 ? choice() : 18, maybe(1.0), &b, scratch, BYTES, NULL));
+    sane(fixpair_compensate_f32(single, LENGTH / 2, 33 + choice(), maybe(1.0), &b, scratch, size(), NULL));
     sane(fixpair_correlation_modes_scratch(&layout, &b));
     sane(fixpair_correlation_modes_f64(data, data + LENGTH, LENGTH, word() % 2 ? choice() : 34, choice() + 16, maybe(1.0), &b,
                                        scratch, BYTES, NULL));
@@ -129,8 +132,9 @@ static void estimates(double *data, float *single, double *scratch, int64_t *sum
     sane(fixpair_triangle_counts(counts, triangles, 4, edges, 5, 2 * few(8), scratch, BYTES, NULL));
     sane(fixpair_shell_modes_f64(data, data + LENGTH, LENGTH, &b, few(5), few(20), NULL));
     sane(fixpair_bispectrum_sums_scratch_f64(&layout, &b, shells, size()));
-    sane(fixpair_bispectrum_sums_f64(sums, triangles, 4, fields, shells % 4, LENGTH, &b, scratch, BYTES, NULL));
-    sane(fixpair_bispectrum_values(values, sums, 4));
+    sane(fixpair_bispectrum_sums_f64(sums, 4 * FIXPAIR_BISPECTRUM_WORDS, triangles, 4, fields, shells % 4, LENGTH, &b, scratch,
+                                     BYTES, NULL));
+    sane(fixpair_bispectrum_values(values, 4, sums, word() % 4 ? 4 * FIXPAIR_BISPECTRUM_WORDS : word() % WORDS));
     values[0] = maybe(1.0);
     sane(fixpair_bispectrum_normalise(values, counts, 4, size(), maybe(100.0), maybe(1.0)));
     sane(fixpair_bispectrum_shot_noise(values, triangles, 4, second, 4, maybe(1.0)));
@@ -148,6 +152,6 @@ static void bispectra(double *data, double *scratch, int64_t *sums, const fixpai
     memset(sums, 0, WORDS * sizeof *sums);
     sane(fixpair_bispectrum_meshes_f64(&reals, fft, size()));
     sane(fixpair_bispectrum_scratch_f64(&layout, fft, few(5), size()));
-    sane(fixpair_bispectrum_f64(sums, NULL, triangles, 2, edges, 1 + word() % 4, data, 640 + word() % 2, fft, data + LENGTH,
-                                few(LENGTH) % LENGTH, scratch, BYTES, NULL));
+    sane(fixpair_bispectrum_f64(sums, 2 * FIXPAIR_BISPECTRUM_WORDS, NULL, triangles, 2, edges, 1 + word() % 4, data,
+                                640 + word() % 2, fft, data + LENGTH, few(LENGTH) % LENGTH, scratch, BYTES, NULL));
 }

@@ -12,12 +12,14 @@
  *     is kept but by a hook of fixpair_fft_init, which goes on using its tables and scratch.
  *     Functions that need scratch have a twin ..._scratch, which says how many bytes, aligned how; contents do not
  *     matter before and mean nothing after. Scratch and tables are aligned to 64 bytes (aligned_alloc, posix_memalign).
+ *     One piece of scratch of the largest size may serve all calls, one after the other.
  *  2. There are no globals. Calls on different memory may run at the same time.
  *  3. A function that can fail returns a status: 0 if it did what it says, else a negative FIXPAIR_ERROR_ code, with all outputs
  *     untouched unless its block says otherwise. fixpair_status_message says what is wrong. Parameters and tables are checked
  *     for NaN; modes are not, unless the block says so: NaN in, NaN out. Particles and power spectra of them are refused.
  *  4. Unless stated, no pointer may be NULL, pointers are aligned to their element, and memory that is written overlaps nothing else.
- *     A length follows its array. It counts elements, for scratch bytes. An array of length 0 may be NULL.
+ *     A length follows its array. It counts elements, for scratch bytes. An array of length 0 may be NULL. What breaks these rules is
+ *     refused: FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, and FIXPAIR_ERROR_OVERFLOW for what is too long to be in memory.
  *  5. Arguments come in this order: outputs, inputs, scratch, exec. Enumerations travel as int32_t. A struct that may grow
  *     begins with its size: fill it with its _init function, or by hand where it has none.
  *  6. The same seed is the same universe. Random modes agree bit for bit: on any number of threads and any machine, in any decomposition,

@@ -26,22 +26,21 @@ struct Spectra {
 };
 
 template <class T>
-Spectra spectra(const std::vector<const T *> &fields, std::size_t length, const std::vector<std::array<std::size_t, 2>> &pairs,
+Spectra spectra(const std::vector<const T *> &fields, std::size_t length, const std::vector<std::size_t> &pairs,
                 const std::vector<std::int32_t> &compensation, const fixpair_brick &brick, const fixpair_binning &binning,
                 const fixpair_exec *exec) {
     std::size_t bins, values, words;
     Spectra result;
-    must(fixpair_binning_lengths(&bins, &values, &words, &binning, pairs.size()));
+    must(fixpair_binning_lengths(&bins, &values, &words, &binning, pairs.size() / 2));
     result.sums.resize(words);
     result.bins.resize(bins);
     result.values.resize(values);
-    must(fixpair_power_sums_scratch(&result.layout, &brick, &binning, pairs.size()));
+    must(fixpair_power_sums_scratch(&result.layout, &brick, &binning, pairs.size() / 2));
     Memory scratch(result.layout.size);
-    const auto numbers = reinterpret_cast<const std::size_t (*)[2]>(pairs.data());
-    must(Names<T>::power_sums(result.sums.data(), words, fields.data(), fields.size(), length, numbers, pairs.size(),
+    must(Names<T>::power_sums(result.sums.data(), words, fields.data(), fields.size(), length, pairs.data(), pairs.size() / 2,
                               compensation.data(), &brick, &binning, scratch.data(), scratch.size(), exec));
     must(fixpair_binning_read(result.bins.data(), bins, result.values.data(), values, result.sums.data(), words, &binning,
-                              pairs.size()));
+                              pairs.size() / 2));
     return result;
 }
 
@@ -70,7 +69,7 @@ void shot_noise(const Transform<T> &fft, const fixpair_exec *exec) {
                            scratch.data(), scratch.size(), exec));
     CHECK(hook->forward(hook->context, data) == 0);
     const Shells shells({1, 36});
-    auto found = spectra<T>({data}, hook->length, {{{0, 0}}}, {FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_TSC},
+    auto found = spectra<T>({data}, hook->length, {0, 0}, {FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_TSC},
                             hook->fourier, shells.binning, exec);
     must(fixpair_binning_normalise(found.values.data(), 1, found.bins.data(), 1, 1,
                                    BOX * BOX * BOX / (static_cast<double>(count) * static_cast<double>(count))));
@@ -92,8 +91,8 @@ void estimates(const fixpair_exec *exec) {
     must(Names<T>::white_modes(g.data(), g.size(), &hook->fourier, &realisation, nullptr, 0, exec));
     Shells shells({1, 4, 9, 16, 25, 36, 49});
     shells.binning.axis[2] = 2;
-    shells.binning.orders = 21;
-    const auto power = spectra<T>({f.data(), g.data()}, f.size(), {{{0, 0}}, {{0, 1}}},
+    shells.binning.orders = FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_2 | FIXPAIR_MULTIPOLE_4;
+    const auto power = spectra<T>({f.data(), g.data()}, f.size(), {0, 0, 0, 1},
                                   {FIXPAIR_COMPENSATION_NONE, FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_CIC},
                                   hook->fourier, shells.binning, exec);
     const std::uint64_t sizes[2] = {power.layout.size, power.layout.align};
@@ -112,7 +111,7 @@ void estimates(const fixpair_exec *exec) {
     must(Names<T>::bispectrum_scratch(&layout, hook, edges_len - 1, count));
     Memory fields(reals * sizeof(T)), scratch(layout.size);
     std::vector<std::int64_t> sums(count * FIXPAIR_BISPECTRUM_WORDS);
-    must(Names<T>::bispectrum(sums.data(), &transforms, triangles.data(), count, edges.data(), edges_len, f.data(), f.size(),
+    must(Names<T>::bispectrum(sums.data(), sums.size(), &transforms, triangles.data(), count, edges.data(), edges_len, f.data(), f.size(),
                               hook, static_cast<T *>(fields.data()), reals, scratch.data(), scratch.size(), exec));
     CHECK(transforms >= edges_len - 1);
     check_case((std::string("bispectrum_sums") + Names<T>::ending()).c_str(),

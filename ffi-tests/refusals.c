@@ -93,6 +93,10 @@ static void bricks(void) {
     REFUSED(FIXPAIR_ERROR_BRICK, brick->count[0] = SIZE_MAX);
     REFUSED(FIXPAIR_ERROR_BRICK, brick->stride[1] = 1);
     REFUSED(FIXPAIR_ERROR_OVERFLOW, brick->stride[0] = SIZE_MAX / 2);
+    /* Cells may run over the edge, modes may not. */
+    ACCEPTED((brick->space = FIXPAIR_SPACE_CONFIGURATION, brick->start[1] = SIDE - 1));
+    REFUSED(FIXPAIR_ERROR_BRICK, (brick->space = FIXPAIR_SPACE_CONFIGURATION, brick->start[1] = SIDE));
+    REFUSED(FIXPAIR_ERROR_BRICK, (brick->space = FIXPAIR_SPACE_CONFIGURATION, brick->count[0] = SIDE + 1));
 }
 
 static int32_t twice_for(void *context, size_t count, void (*body)(void *, size_t), void *argument) {

@@ -12,6 +12,7 @@ CALL(edges_wavenumbers, (P(0), P(1), L(0), a->d[0]))
 CALL(edges_exact, (P(0), L(0), a->u))
 CALL(power_sums_scratch, (P(0), P(1), P(2), L(0)))
 CALL(subtract_shot_noise, (P(0), L(0), P(1), L(1), P(2), L(2), (uint32_t)a->u, P(3), L(3)))
+CALL(compensate_scratch, (P(0), P(1)))
 CALL(correlation_modes_scratch, (P(0), P(1)))
 CALL(correlation_sums_scratch, (P(0), P(1), P(2), L(0)))
 CALL(closed_triangle_count, (P(0), P(1), L(0), P(2)))
@@ -19,7 +20,7 @@ CALL(closed_triangles, (P(0), L(0), P(1), L(1), P(2)))
 CALL(squeezed_triangles, (P(0), L(0), L(1), L(2)))
 CALL(triangle_counts_scratch, (P(0), P(1), L(0), P(2), L(1), L(2)))
 CALL(triangle_counts, (P(0), P(1), L(0), P(2), L(1), L(2), P(3), L(3), P(4)))
-CALL(bispectrum_values, (P(0), P(1), L(0)))
+CALL(bispectrum_values, (P(0), L(0), P(1), L(1)))
 CALL(bispectrum_normalise, (P(0), P(1), L(0), L(1), a->d[0], a->d[1]))
 CALL(bispectrum_shot_noise, (P(0), P(1), L(0), P(2), L(1), a->d[0]))
 CALL(bispectrum_reduced, (P(0), P(1), P(2), L(0), P(3), L(1)))
@@ -40,7 +41,7 @@ static fixpair_binning *binning_at(int pointer) {
     binning->second = FIXPAIR_SECOND_COSINE;
     binning->second_edges = wedges;
     binning->second_edges_len = 3;
-    binning->orders = 5;
+    binning->orders = FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_2;
     return binning;
 }
 
@@ -268,12 +269,15 @@ static void scratch_of_sums(void) {
         refuse_bricks(brick);
         refuse_binnings(binning, t.a.p[0]);
     }
-    begin("correlation_modes_scratch", call_correlation_modes_scratch);
-    STRUCT(0, OUT, fixpair_layout);
-    brick = STRUCT(1, IN, fixpair_brick);
-    MUST(fixpair_brick_whole(brick, SIDE, FIXPAIR_SPACE_FOURIER, 0));
-    refuse_pointers_and_lengths();
-    refuse_bricks(brick);
+    for (which = 0; which < 2; which++) {
+        begin(which ? "compensate_scratch" : "correlation_modes_scratch",
+              which ? call_compensate_scratch : call_correlation_modes_scratch);
+        STRUCT(0, OUT, fixpair_layout);
+        brick = STRUCT(1, IN, fixpair_brick);
+        MUST(fixpair_brick_whole(brick, SIDE, FIXPAIR_SPACE_FOURIER, 0));
+        refuse_pointers_and_lengths();
+        refuse_bricks(brick);
+    }
 }
 
 /* Edges at p[pointer]. */
@@ -381,10 +385,11 @@ static void numbers_of_triangles(void) {
     begin("bispectrum_values", call_bispectrum_values);
     ARRAY(0, OUT, double, TRIANGLES);
     sums = ARRAY(1, IN, int64_t, SUM * TRIANGLES);
-    length(0, TRIANGLES, FREE);
+    length(0, TRIANGLES, EXACT);
+    length(1, SUM * TRIANGLES, EXACT);
     refuse_pointers_and_lengths();
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, sums[SUM - 1] = 1);
-    ACCEPTED((t.a.n[0] = 0, t.a.p[0] = NULL, t.a.p[1] = NULL));
+    ACCEPTED((t.a.n[0] = t.a.n[1] = 0, t.a.p[0] = NULL, t.a.p[1] = NULL));
 
     begin("bispectrum_normalise", call_bispectrum_normalise);
     values = ARRAY(0, OUT, double, TRIANGLES);

@@ -10,15 +10,16 @@ CALL_REAL(add_cells, (P(0), L(0), P(1), P(2), L(1), P(3), P(4)))
 CALL_REAL(copy_cells, (P(0), L(0), P(1), P(2), L(1), P(3), P(4)))
 CALL_REAL(interlace, (P(0), P(1), L(0), P(2), P(3)))
 CALL_REAL(power_sums, (P(0), L(0), P(1), L(1), L(2), P(2), L(3), P(3), P(4), P(5), P(6), L(4), P(7)))
-CALL_REAL(shot_noise, (P(0), P(1), a->u, a->d[0]))
+CALL_REAL(shot_noise, (P(0), P(1), L(1), L(0), a->d[0]))
+CALL_REAL(compensate, (P(0), L(0), a->i[0], a->d[0], P(1), P(2), L(1), P(3)))
 CALL_REAL(correlation_modes, (P(0), P(1), L(0), a->i[0], a->i[1], a->d[0], P(2), P(3), L(1), P(4)))
 CALL_REAL(correlation_sums, (P(0), L(0), P(1), L(1), L(2), P(2), P(3), P(4), L(3), P(5)))
 CALL_REAL(shell_modes, (P(0), P(1), L(0), P(2), a->u, L(1), P(3)))
 CALL_REAL(bispectrum_sums_scratch, (P(0), P(1), L(0), L(1)))
-CALL_REAL(bispectrum_sums, (P(0), P(1), L(0), P(2), L(1), L(2), P(3), P(4), L(3), P(5)))
+CALL_REAL(bispectrum_sums, (P(0), L(4), P(1), L(0), P(2), L(1), L(2), P(3), P(4), L(3), P(5)))
 CALL_REAL(bispectrum_meshes, (P(0), P(1), L(0)))
 CALL_REAL(bispectrum_scratch, (P(0), P(1), L(0), L(1)))
-CALL_REAL(bispectrum, (P(0), P(1), P(2), L(0), P(3), L(1), P(4), L(2), P(5), P(6), L(3), P(7), L(4), P(8)))
+CALL_REAL(bispectrum, (P(0), L(5), P(1), P(2), L(0), P(3), L(1), P(4), L(2), P(5), P(6), L(3), P(7), L(4), P(8)))
 
 enum { X(FEW) = 7 };
 
@@ -248,20 +249,41 @@ static void X(refuse_spectra)(void) {
 
     begin("shot_noise" SUFFIX, X(call_shot_noise));
     ARRAY(0, OUT, double, 1);
-    weights = ARRAY(1, IN, REAL, X(FEW));
+    weights = ARRAY(1, IN, REAL, 2 * X(FEW) - 1);
     t.slots[1].optional = 1;
-    weights[0] = weights[3] = 1;
-    t.a.u = X(FEW);
+    weights[0] = weights[6] = 1;
+    length(0, X(FEW), FREE);
+    t.a.n[1] = 2;
     t.a.d[0] = BOX;
     refuse_pointers_and_lengths();
-    ACCEPTED(t.a.p[1] = NULL);
-    REFUSED(FIXPAIR_ERROR_RANGE, t.a.u = 0);
-    REFUSED(FIXPAIR_ERROR_OVERFLOW, t.a.u = UINT64_MAX);
+    ACCEPTED((t.a.p[1] = NULL, t.a.n[1] = 0));
+    REFUSED(FIXPAIR_ERROR_RANGE, t.a.n[0] = 0);
+    REFUSED(FIXPAIR_ERROR_RANGE, t.a.n[1] = 0);
+    REFUSED(FIXPAIR_ERROR_OVERFLOW, t.a.n[1] = SIZE_MAX);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.d[0] = 0.0);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.d[0] = -BOX);
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, t.a.d[0] = (double)NAN);
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, weights[2] = (REAL)NAN);
-    REFUSED(FIXPAIR_ERROR_RANGE, weights[3] = -1);
+    ACCEPTED(weights[1] = (REAL)NAN);
+    REFUSED(FIXPAIR_ERROR_RANGE, weights[6] = -1);
+
+    begin("compensate" SUFFIX, X(call_compensate));
+    MUST(fixpair_compensate_scratch(&layout, &modes_brick));
+    ARRAY(0, OUT, REAL, reals);
+    own = STRUCT(1, IN, fixpair_brick);
+    *own = modes_brick;
+    SCRATCH_OF(2, layout.size);
+    exec_at(3);
+    length(0, reals, LEAST);
+    length(1, layout.size, SCRATCH);
+    t.a.i[0] = FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC;
+    t.a.d[0] = 0.5;
+    refuse_pointers_and_lengths();
+    refuse_bricks(own);
+    X(refuse_compensations)(&t.a.i[0]);
+    ACCEPTED(t.a.i[0] = FIXPAIR_COMPENSATION_NONE);
+    REFUSED(FIXPAIR_ERROR_NOT_FINITE, t.a.d[0] = (double)NAN);
+    REFUSED(FIXPAIR_ERROR_NOT_FINITE, t.a.d[0] = (double)INFINITY);
 
     begin("correlation_modes" SUFFIX, X(call_correlation_modes));
     MUST(fixpair_correlation_modes_scratch(&layout, &modes_brick));
@@ -357,7 +379,8 @@ static void X(refuse_bispectra)(void) {
     for (i = 0; i < SHELLS; i++) {
         fields[i] = modes = (REAL *)lay(reals * sizeof(REAL), IN);
     }
-    length(0, TRIANGLES, FREE);
+    length(0, TRIANGLES, EXACT);
+    length(4, SUM * TRIANGLES, EXACT);
     length(1, SHELLS, FREE);
     length(2, reals, LEAST);
     length(3, layout.size, SCRATCH);
@@ -365,7 +388,7 @@ static void X(refuse_bispectra)(void) {
     refuse_bricks(own);
     X(refuse_fields)(fields, t.a.p[0]);
     REFUSED(FIXPAIR_ERROR_OVERLAP, fields[2] = (REAL *)t.a.p[4]);
-    ACCEPTED((t.a.n[0] = 1, fields[2] = NULL));
+    ACCEPTED((t.a.n[0] = 1, t.a.n[4] = SUM, fields[2] = NULL));
     REFUSED(FIXPAIR_ERROR_RANGE, triangles[0] = SHELLS);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.n[1] = 2);
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, modes[3] = (REAL)NAN);
@@ -402,14 +425,15 @@ static void X(refuse_bispectra)(void) {
     ARRAY(6, WORK, REAL, fields_len);
     SCRATCH_OF(7, layout.size);
     exec_at(8);
-    length(0, TRIANGLES, FREE);
+    length(0, TRIANGLES, EXACT);
+    length(5, SUM * TRIANGLES, EXACT);
     length(1, EDGES, FREE);
     length(2, reals, LEAST);
     length(3, fields_len, LEAST);
     length(4, layout.size, SCRATCH);
     refuse_pointers_and_lengths();
     ACCEPTED(t.a.p[1] = NULL);
-    ACCEPTED((t.a.n[0] = 0, t.a.p[0] = NULL, t.a.p[2] = NULL));
+    ACCEPTED((t.a.n[0] = t.a.n[5] = 0, t.a.p[0] = NULL, t.a.p[2] = NULL));
     X(refuse_hooks)(fft);
     refuse_shells(edges, 1);
     REFUSED(FIXPAIR_ERROR_RANGE, edges[3] = 10);

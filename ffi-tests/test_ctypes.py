@@ -263,10 +263,10 @@ class Twin:
 OPTIONAL = {"white_modes": [3, 4, 6], "fft_init": [6], "initial_conditions_scratch": [3], "initial_conditions": [4, 7],
             "displace": [3, 10], "exec_self_test": [0], "deposit": [4, 11], "read_out": [11], "power_sums": [7, 12],
             "shot_noise": [1], "correlation_modes": [1, 9], "correlation_sums": [9], "closed_triangle_count": [3],
-            "closed_triangles": [4], "triangle_counts": [8], "bispectrum_sums": [9], "bispectrum": [1, 13]}
+            "closed_triangles": [4], "triangle_counts": [8], "bispectrum_sums": [10], "bispectrum": [2, 14]}
 EXEC = ("particle_ids", "potential_amplitude_table", "alpha_table", "impose", "modes_from_field", "scale_modes",
         "copy_modes", "add_local", "second_order_source", "displacement", "add_cells", "copy_cells", "interlace",
-        "shell_modes")
+        "shell_modes", "compensate")
 # Sizes that follow a pointer and are not its length: sides, an axis, a number of threads.
 NO_LENGTH = {"mode_table_length": 1, "fft_tables_scratch": 1, "fft_scratch": 1, "brick_whole": 1, "brick_slab": 1,
              "brick_transposed_slab": 1, "threads_create": 2, "displacement": 5, "displace": 6, "deposit_scratch": 2,

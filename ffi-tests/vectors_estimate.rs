@@ -6,7 +6,7 @@ use fixpair::estimate::bispectrum::{
     bispectrum_sums_scratch, bispectrum_values, closed_triangle_count, closed_triangles, shell_modes,
     squeezed_triangles, triangle_counts, triangle_counts_scratch,
 };
-use fixpair::estimate::compensation::Compensation;
+use fixpair::estimate::compensation::{Compensation, compensate, compensate_scratch};
 use fixpair::estimate::correlation::{
     correlation_modes, correlation_modes_scratch, correlation_sums, correlation_sums_scratch,
 };
@@ -86,6 +86,7 @@ pub(crate) fn estimate_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
     white_modes(&mut f, &brick, &Realisation::new(SEED), &Serial).expect("modes");
     white_modes(&mut g, &brick, &pair, &Serial).expect("modes");
     power_cases(add, &f, &g, &brick);
+    compensation_cases(add, &f, &brick);
     correlation_cases(add, &f, &g, &brick);
     bispectrum_cases(add, &f);
     let weights: Vec<T> = (0..500).map(|i| T::from_f64(1.25 + noise(5 * i))).collect();
@@ -129,6 +130,17 @@ fn power_cases<T: Real>(add: &mut dyn FnMut(&str, Hash), f: &[T], g: &[T], brick
     let (_, sums) = run(&wedges, &[[0, 0], [1, 1], [1, 0]], &[window; 2]);
     let (bins, values) = read(&sums, &wedges, 3);
     add("power.wedges", described(words(Hash::new(), &sums), &bins, &values));
+}
+
+fn compensation_cases<T: Real>(add: &mut dyn FnMut(&str, Hash), f: &[T], brick: &Brick) {
+    let layout = compensate_scratch(brick).expect("scratch");
+    let (mut memory, mut modes, mut hash) = (Memory::new(layout), f.to_vec(), sizes(Hash::new(), layout));
+    let (window, aliased) = (Window::TriangularShapedCloud, Window::PiecewiseCubicSpline);
+    for (chosen, scale) in [(Compensation::Window(window), 0.3), (Compensation::Aliased(aliased), -2.0)] {
+        compensate(&mut modes, chosen, scale, brick, memory.bytes(layout.size), &Serial).expect("modes");
+        hash = elements(hash, &modes, brick);
+    }
+    add("compensate", hash);
 }
 
 fn correlation_cases<T: Real>(add: &mut dyn FnMut(&str, Hash), f: &[T], g: &[T], brick: &Brick) {

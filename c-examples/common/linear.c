@@ -66,7 +66,7 @@ int linear_density(struct linear *linear, const struct fixpair_conditions *condi
 }
 
 int linear_measure(struct linear *linear, double box_size, const double *modes, double *k, double *power) {
-    static const size_t pair[1][2] = {{0, 0}};
+    static const size_t pair[] = {0, 0};
     /* The mean alone: as many values as bins. */
     size_t shells = linear->shells;
     memset(linear->sums, 0, linear->words * sizeof *linear->sums);

@@ -10,10 +10,10 @@
 
 #define PI 3.141592653589793
 
-enum { MULTIPOLES = 3, P_0_2_4 = 1 << 0 | 1 << 2 | 1 << 4, MESHES = 3 };
+enum { MULTIPOLES = 3, P_0_2_4 = FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_2 | FIXPAIR_MULTIPOLE_4, MESHES = 3 };
 
 /* The auto spectrum of the only field. */
-static const size_t itself[1][2] = {{0, 0}};
+static const size_t itself[] = {0, 0};
 
 /* ---- The hook of the transform is the place to see how far a long call is: two deposits and a transform a shell. */
 
@@ -75,6 +75,8 @@ static int take_scratch(struct spectra *spectra) {
     enlarge(&spectra->scratch_len, layout);
     TRY(fixpair_power_sums_scratch(&layout, &fft->fourier, &spectra->wide.binning, 1));
     enlarge(&spectra->scratch_len, layout);
+    TRY(fixpair_compensate_scratch(&layout, &fft->fourier));
+    enlarge(&spectra->scratch_len, layout);
     TRY(fixpair_triangle_counts_scratch(&layout, spectra->triangles, wide, spectra->wide.edges, wide + 1, spectra->choice.n));
     enlarge(&spectra->scratch_len, layout);
     TRY(fixpair_bispectrum_scratch_f64(&layout, fft, wide, wide));
@@ -82,17 +84,6 @@ static int take_scratch(struct spectra *spectra) {
     layout.size = spectra->scratch_len;
     spectra->scratch = memory_take(layout);
     return spectra->scratch == NULL;
-}
-
-/* Mode number i of a mesh is divided by the window's (sin(x)/x)^p, x = pi i/n, p = 1..4 being what FIXPAIR_WINDOW_... stands for. */
-static int take_inverse_window(struct spectra *spectra) {
-    size_t n = spectra->choice.n;
-    if ((spectra->inverse_window = memory_take_doubles(n)) == NULL) return 1;
-    for (size_t i = 0; i < n; i++) {
-        double x = PI * (i <= n / 2 ? (double)i : (double)i - (double)n) / (double)n;
-        spectra->inverse_window[i] = i == 0 ? 1.0 : pow(x / sin(x), (double)spectra->choice.window);
-    }
-    return 0;
 }
 
 int spectra_open(struct spectra *spectra, const struct spectra_choice *choice, const struct fixpair_exec *exec) {
@@ -109,7 +100,7 @@ int spectra_open(struct spectra *spectra, const struct spectra_choice *choice, c
         return 1;
     }
     TRY(shells_open(&spectra->narrow, (size_t)narrow, 1.0, 1.0, P_0_2_4));
-    TRY(shells_open(&spectra->wide, (size_t)wide, width / 2.0, width, 1));
+    TRY(shells_open(&spectra->wide, (size_t)wide, width / 2.0, width, FIXPAIR_MULTIPOLE_0));
     size_t triangles = spectra->wide.count;
     spectra->triangles = calloc(3 * triangles, sizeof *spectra->triangles);
     spectra->counts = calloc(triangles, sizeof *spectra->counts);
@@ -125,7 +116,6 @@ int spectra_open(struct spectra *spectra, const struct spectra_choice *choice, c
     TRY(fixpair_bispectrum_meshes_f64(&spectra->fields_len, &spectra->hook, MESHES));
     if ((spectra->mesh = memory_take_doubles(spectra->hook.length)) == NULL) return 1;
     if ((spectra->fields = memory_take_doubles(spectra->fields_len)) == NULL) return 1;
-    TRY(take_inverse_window(spectra));
     return take_scratch(spectra);
 }
 
@@ -136,7 +126,6 @@ void spectra_close(struct spectra *spectra) {
     free(spectra->triangles);
     free(spectra->counts);
     free(spectra->triangle_sums);
-    free(spectra->inverse_window);
     free(spectra->mesh);
     free(spectra->fields);
     free(spectra->scratch);
@@ -223,32 +212,19 @@ static int measure_power(struct spectra *spectra, struct spectra_shells *shells,
     return 0;
 }
 
-/* Divides one x plane of modes by the window: an iteration of the loop of any executor. */
-static void compensate_plane(void *argument, size_t i) {
-    struct spectra *spectra = argument;
-    const struct fixpair_brick *brick = &spectra->hook.fourier;
-    const double *inverse = spectra->inverse_window;
-    for (size_t j = 0; j < brick->count[1]; j++) {
-        double *row = spectra->mesh + 2 * (i * brick->stride[0] + j * brick->stride[1]);
-        for (size_t l = 0; l < brick->count[2]; l++) {
-            row[2 * l * brick->stride[2]] *= inverse[i] * inverse[j] * inverse[l];
-            row[2 * l * brick->stride[2] + 1] *= inverse[i] * inverse[j] * inverse[l];
-        }
-    }
-}
-
-/* Overwrites the modes. */
+/* Turns the modes into those of the overdensity, by `scale` and without the window. */
 static int measure_bispectrum(struct spectra *spectra, struct spectra_result *result, double scale) {
     const struct spectra_shells *wide = &spectra->wide;
     const struct fixpair_fft_f64 *fft = &spectra->hook;
-    size_t count = wide->count;
-    if (spectra->exec->parallel_for(spectra->exec->context, fft->fourier.count[0], compensate_plane, spectra) != 0) return 1;
-    memset(spectra->triangle_sums, 0, FIXPAIR_BISPECTRUM_WORDS * count * sizeof *spectra->triangle_sums);
-    TRY(fixpair_bispectrum_f64(spectra->triangle_sums, NULL, spectra->triangles, count, wide->edges, count + 1, spectra->mesh,
-                               fft->length, fft, spectra->fields, spectra->fields_len, spectra->scratch, spectra->scratch_len,
+    size_t count = wide->count, words = FIXPAIR_BISPECTRUM_WORDS * count;
+    TRY(fixpair_compensate_f64(spectra->mesh, fft->length, FIXPAIR_COMPENSATION_WINDOW + spectra->choice.window, scale,
+                               &fft->fourier, spectra->scratch, spectra->scratch_len, spectra->exec));
+    memset(spectra->triangle_sums, 0, words * sizeof *spectra->triangle_sums);
+    TRY(fixpair_bispectrum_f64(spectra->triangle_sums, words, NULL, spectra->triangles, count, wide->edges, count + 1,
+                               spectra->mesh, fft->length, fft, spectra->fields, spectra->fields_len, spectra->scratch, spectra->scratch_len,
                                spectra->exec));
-    TRY(fixpair_bispectrum_values(result->bispectrum, spectra->triangle_sums, count));
-    TRY(fixpair_bispectrum_normalise(result->bispectrum, spectra->counts, count, spectra->choice.n, spectra->choice.box_size, scale));
+    TRY(fixpair_bispectrum_values(result->bispectrum, count, spectra->triangle_sums, words));
+    TRY(fixpair_bispectrum_normalise(result->bispectrum, spectra->counts, count, spectra->choice.n, spectra->choice.box_size, 1.0));
     return 0;
 }
 
@@ -277,7 +253,7 @@ int spectra_measure(struct spectra *spectra, struct spectra_result *result, cons
     result->bispectrum_noise = result->bispectrum + wide;
     result->reduced = result->bispectrum_noise + wide;
 
-    TRY(fixpair_shot_noise_f64(&result->noise, NULL, position->length, spectra->choice.box_size));
+    TRY(fixpair_shot_noise_f64(&result->noise, NULL, 0, position->length, spectra->choice.box_size));
     TRY(deposit(spectra, spectra->mesh, position, 0.0));
     if (spectra->choice.interlaced) {
         TRY(deposit(spectra, spectra->fields, position, 0.5));

@@ -55,7 +55,6 @@ struct spectra {
     uint32_t *triangles;          /* three shells each; as many triangles as wide shells */
     uint64_t *counts;             /* of modes that close each */
     int64_t *triangle_sums;
-    double *inverse_window; /* 1/sinc^p by index along an axis */
     double *mesh;
     double *fields; /* three meshes: the second of interlacing, then shells */
     size_t fields_len;

@@ -13,6 +13,17 @@ pub const FIXPAIR_SECOND_COSINE: i32 = 1;
 /// Bins of n_perp and |n.a|, for P(k_perp, k_par).
 pub const FIXPAIR_SECOND_PARALLEL: i32 = 2;
 
+/// In orders: the mean, l = 0.
+pub const FIXPAIR_MULTIPOLE_0: u32 = 1;
+/// In orders: the dipole, l = 1.
+pub const FIXPAIR_MULTIPOLE_1: u32 = 2;
+/// In orders: the quadrupole, l = 2.
+pub const FIXPAIR_MULTIPOLE_2: u32 = 4;
+/// In orders: l = 3.
+pub const FIXPAIR_MULTIPOLE_3: u32 = 8;
+/// In orders: the hexadecapole, l = 4.
+pub const FIXPAIR_MULTIPOLE_4: u32 = 16;
+
 /// What spectra and correlation functions are binned by. n is an integer vector: the mode k = (2 pi/L) n, or the separation x = (L/N) n.
 ///
 /// Bin b holds edges[b] <= |n|^2 < edges[b+1]: integers, so that no mode lies on an edge by rounding. With a second coordinate bin (b, c) is number
@@ -33,7 +44,7 @@ pub struct fixpair_binning {
     pub edges_len: usize,
     /// FIXPAIR_SECOND_...
     pub second: i32,
-    /// Multipoles: bit l asks for l = 0..4. 1 is the mean alone, 21 is l = 0, 2, 4.
+    /// Multipoles: FIXPAIR_MULTIPOLE_0, or several: FIXPAIR_MULTIPOLE_0 | FIXPAIR_MULTIPOLE_2 | FIXPAIR_MULTIPOLE_4.
     pub orders: u32,
     /// Increasing edges of the second coordinate; NULL without one.
     pub second_edges: *const f64,
@@ -82,7 +93,7 @@ pub(super) unsafe fn binning<'a>(
 ///
 /// Out: binning  refers to the edges, which have to stay where they are
 /// In:  edges    edges_len increasing values of |n|^2, see fixpair_edges_uniform and its neighbours
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _TABLE
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _TABLE
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -186,8 +197,9 @@ pub unsafe extern "C" fn fixpair_binning_read(
 
 /// Turns sums into multipoles: value_l <- (2l + 1) factor value_l / count, and 0 in empty bins.
 ///
-/// For P_l in (Mpc/h)^3 the factor is L^3 s^2, where s makes the modes those of f(x) = sum_k f_k exp(+i k.x): 1/n^3 after an un-normalised transform
-/// of an overdensity. For xi_l it is 1. The variance of P_0 of a Gaussian field is 2 P^2/count.
+/// For P_l in (Mpc/h)^3 the factor is L^3 times the scale of either field, what makes its modes those of f(x) = sum_k f_k exp(+i k.x): L^3/(sum of
+/// weights)^2 for the density contrast of a deposit, L^3/n^6 for any other field (both after a transform that does not divide), L^3 for modes of this
+/// library and those that fixpair_compensate_f64 brought to scale. For xi_l it is 1. The variance of P_0 of a Gaussian field is 2 P^2/count.
 ///
 /// In/out: values  values_len numbers of one or more spectra
 /// In:     bins    bins_len bins
@@ -220,7 +232,7 @@ pub unsafe extern "C" fn fixpair_binning_normalise(
 ///
 /// Out: edges  edges_len integers
 /// In:  first, width
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _NOT_FINITE, FIXPAIR_ERROR_RANGE for edges below 0 or from 4e9 on, FIXPAIR_ERROR_TABLE for
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for edges below 0 or from 4e9 on, FIXPAIR_ERROR_TABLE for
 ///          fewer than two edges or edges that do not increase as integers; nothing is then written
 ///
 /// # Safety

@@ -24,7 +24,8 @@ const _: () = assert!(FIXPAIR_BISPECTRUM_WORDS == ExactSum::WORDS);
 /// Out: count
 /// In:  edges    edges_len increasing values of |n|^2, n = k L/(2 pi): shell s holds the modes edges[s] <= |n|^2 < edges[s+1]
 ///      centres  edges_len - 1 increasing numbers >= 0, or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_TABLE for edges or centres that do not increase, FIXPAIR_ERROR_NOT_FINITE for centres
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_TABLE for edges or centres that do not increase or centres
+///          below 0, FIXPAIR_ERROR_NOT_FINITE for centres
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -56,7 +57,7 @@ pub unsafe extern "C" fn fixpair_closed_triangle_count(
 ///
 /// Out: triangles  3 triangles_len numbers, triangles_len from fixpair_closed_triangle_count
 /// In:  edges, centres as fixpair_closed_triangle_count
-/// Returns: 0, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_OVERLAP, or as fixpair_closed_triangle_count
+/// Returns: 0, FIXPAIR_ERROR_LENGTH for any other triangles_len, or as fixpair_closed_triangle_count
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -85,7 +86,7 @@ pub unsafe extern "C" fn fixpair_closed_triangles(
 /// Out: triangles  3 triangles_len numbers, triangles_len = shells - shell
 /// In:  shell      counted from 0
 ///      shells     how many there are
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_RANGE unless shell < shells
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERFLOW, FIXPAIR_ERROR_LENGTH for any other triangles_len, FIXPAIR_ERROR_RANGE unless shell < shells
 ///
 /// # Safety
 /// `triangles` is null or points to as many values as stated.
@@ -181,7 +182,7 @@ pub unsafe extern "C" fn fixpair_triangle_counts(
 /// takes.
 ///
 /// Out: out    len reals
-/// In:  modes  len reals: modes with delta(x) = sum_k delta_k exp(+i k.x)
+/// In:  modes  len reals: modes with delta(x) = sum_k delta_k exp(+i k.x); those of a deposit compensated before, by fixpair_compensate_f64
 ///      brick  of Fourier space, where both lie, in any layout
 ///      lo, hi edges of the shell; hi at most (n/2)^2
 ///      exec   or NULL
@@ -248,7 +249,7 @@ unsafe fn shell<T: Real>(
 /// In:  brick          of configuration space
 ///      shells         S
 ///      triangles_len  T
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the brick is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, or why the brick is refused
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -298,7 +299,7 @@ unsafe fn sums_scratch<T: Real>(
 /// bit. fixpair_bispectrum_values makes numbers of them. In single precision products of three fields vanish below 1e-38 and
 /// overflow above 3e38.
 ///
-/// In/Out: sums     FIXPAIR_BISPECTRUM_WORDS * triangles_len integers
+/// In/Out: sums     sums_len = FIXPAIR_BISPECTRUM_WORDS * triangles_len integers
 /// In:     triangles  3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
 ///         fields   shells pointers to len reals each; those of shells that no triangle names may be NULL
 ///         brick    of configuration space, where each field lies; what lies between its rows is not read
@@ -313,6 +314,7 @@ unsafe fn sums_scratch<T: Real>(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_sums_f64(
     sums: *mut i64,
+    sums_len: usize,
     triangles: *const u32,
     triangles_len: usize,
     fields: *const *const f64,
@@ -325,7 +327,19 @@ pub unsafe extern "C" fn fixpair_bispectrum_sums_f64(
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
     code(unsafe {
-        field_sums(sums, triangles, triangles_len, fields, shells, len, brick, scratch, scratch_len, exec)
+        field_sums(
+            sums,
+            sums_len,
+            triangles,
+            triangles_len,
+            fields,
+            shells,
+            len,
+            brick,
+            scratch,
+            scratch_len,
+            exec,
+        )
     })
 }
 
@@ -336,6 +350,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_sums_f64(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_sums_f32(
     sums: *mut i64,
+    sums_len: usize,
     triangles: *const u32,
     triangles_len: usize,
     fields: *const *const f32,
@@ -348,8 +363,31 @@ pub unsafe extern "C" fn fixpair_bispectrum_sums_f32(
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
     code(unsafe {
-        field_sums(sums, triangles, triangles_len, fields, shells, len, brick, scratch, scratch_len, exec)
+        field_sums(
+            sums,
+            sums_len,
+            triangles,
+            triangles_len,
+            fields,
+            shells,
+            len,
+            brick,
+            scratch,
+            scratch_len,
+            exec,
+        )
     })
+}
+
+/// The sums of `triangles` triangles: as many, and no more.
+fn sums_of(words: &mut [i64], triangles: usize) -> Result<&mut [ExactSum]> {
+    check_words(words.len(), triangles)?;
+    Ok(ExactSum::in_words(words))
+}
+
+fn check_words(words: usize, triangles: usize) -> Result<()> {
+    let expected = triangles.checked_mul(FIXPAIR_BISPECTRUM_WORDS);
+    if expected == Some(words) { Ok(()) } else { Err(Error::Length) }
 }
 
 /// Pointers to fields that all threads read.
@@ -371,6 +409,7 @@ impl<'a, T: Real> Fields<'a, T> {
 
 unsafe fn field_sums<T: Real>(
     sums: *mut i64,
+    sums_len: usize,
     triangles: *const u32,
     triangles_len: usize,
     fields: *const *const T,
@@ -382,18 +421,19 @@ unsafe fn field_sums<T: Real>(
     exec: *const fixpair_exec,
 ) -> Result<()> {
     let mut border = Border::new();
-    // SAFETY: the caller's promise; a sum is as many integers as stated, and a triangle three numbers.
+    // SAFETY: the caller's promise; a triangle is three numbers.
     unsafe {
-        let sums = border.write(sums.cast::<ExactSum>(), triangles_len)?;
+        let words = border.write(sums, sums_len)?;
         let starts = border.read(fields, shells)?;
         for &start in starts {
             // More fields than a border has room for: each is compared with what is written.
             let mut border = Border::new();
-            border.strided(sums.as_mut_ptr(), 1, triangles_len)?;
+            border.strided(sums, 1, sums_len)?;
             border.strided(scratch.cast::<u8>(), 1, scratch_len)?;
             border.read_optional(start, len)?;
         }
         let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
+        let sums = sums_of(words, triangles_len)?;
         let missing = |&shell: &u32| starts.get(shell as usize).is_some_and(|start| start.is_null());
         if len > 0 && triangles.iter().flatten().any(missing) {
             return Err(Error::Null);
@@ -412,7 +452,7 @@ unsafe fn field_sums<T: Real>(
 /// Out: reals
 /// In:  fft
 ///      count
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the hook is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, or why the hook is refused
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -456,7 +496,7 @@ unsafe fn meshes<H: Hook>(reals: *mut usize, fft: *const H, count: usize) -> Res
 /// Out: scratch
 /// In:  fft
 ///      shells, triangles_len  how many there are
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_OVERFLOW, or why the hook is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, or why the hook is refused
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -503,17 +543,29 @@ unsafe fn whole_scratch<H: Hook>(
 }
 
 /// From modes to the sums of all triangles of a list: what fixpair_bispectrum_sums_f64 adds, with the shells' transforms, in as much memory as
-/// there is.
+/// there is. The whole way, for a deposit of weights whose sum is W:
+///
+///     fixpair_squeezed_triangles(triangles, T, 0, edges_len - 1);    T = edges_len - 1; or fixpair_closed_triangles
+///     fixpair_triangle_counts(counts, triangles, T, edges, edges_len, n, ...);    once: save counts with triangles, edges and n
+///     fixpair_compensate_f64(modes, len, FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC, 1.0/W, &fft.fourier, ...);
+///     fixpair_bispectrum_f64(sums, words, NULL, triangles, T, edges, edges_len, modes, ...);    then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
+///     fixpair_bispectrum_values(B, T, sums, words);
+///     fixpair_bispectrum_normalise(B, counts, T, n, L, 1.0);
+///
+/// P of the same shells, which fixpair_bispectrum_shot_noise and fixpair_bispectrum_reduced take, comes from fixpair_power_sums_f64: edges as here,
+/// and FIXPAIR_COMPENSATION_NONE for modes that are compensated already. Every transform is a call of fft: in a long call a hook that counts its
+/// calls can tell how far it is.
 ///
 /// With a mesh for each shell each shell is transformed once. With fewer, at least 3, shells come and go: for 40 shells and all their
-/// triangles 20 meshes take 116 transforms, 10 meshes 408, 3 meshes 5474. The bits do not depend on it. Where fft holds a
+/// triangles 40 meshes take 40 transforms, 20 meshes 116, 10 meshes 408, 3 meshes 5474. The bits do not depend on it. Where fft holds a
 /// part of the mesh, all processes call with as many meshes and the same triangles, and add their sums.
 ///
-/// In/Out: sums        FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first
+/// In/Out: sums        sums_len = FIXPAIR_BISPECTRUM_WORDS * triangles_len integers, zero at first
 /// Out:    transforms  how many it took; or NULL
 /// In:     triangles   3 triangles_len numbers of shells, counted from 0, in any order; triangles may repeat
 ///         edges       edges_len increasing values of |n|^2: shell s holds edges[s] <= |n|^2 < edges[s+1]; the last at most (n/2)^2
-///         modes       len reals on fft->fourier: delta(x) = sum_k delta_k exp(+i k.x)
+///         modes       len reals on fft->fourier: delta(x) = sum_k delta_k exp(+i k.x); those of a deposit compensated before, by
+///                     fixpair_compensate_f64
 ///         fft         the transform
 ///         fields      fields_len reals, overwritten: those of fixpair_bispectrum_meshes_f64 for as many meshes as can be had
 ///         scratch     scratch_len bytes, see fixpair_bispectrum_scratch_f64
@@ -527,6 +579,7 @@ unsafe fn whole_scratch<H: Hook>(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_f64(
     sums: *mut i64,
+    sums_len: usize,
     transforms: *mut usize,
     triangles: *const u32,
     triangles_len: usize,
@@ -545,6 +598,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_f64(
     code(unsafe {
         whole(
             sums,
+            sums_len,
             transforms,
             triangles,
             triangles_len,
@@ -569,6 +623,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_f64(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_f32(
     sums: *mut i64,
+    sums_len: usize,
     transforms: *mut usize,
     triangles: *const u32,
     triangles_len: usize,
@@ -587,6 +642,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_f32(
     code(unsafe {
         whole(
             sums,
+            sums_len,
             transforms,
             triangles,
             triangles_len,
@@ -606,6 +662,7 @@ pub unsafe extern "C" fn fixpair_bispectrum_f32(
 
 unsafe fn whole<H: Hook>(
     sums: *mut i64,
+    sums_len: usize,
     transforms: *mut usize,
     triangles: *const u32,
     triangles_len: usize,
@@ -621,14 +678,15 @@ unsafe fn whole<H: Hook>(
     exec: *const fixpair_exec,
 ) -> Result<()> {
     let mut border = Border::new();
-    // SAFETY: the caller's promise; a sum is as many integers as stated, and a triangle three numbers.
+    // SAFETY: the caller's promise; a triangle is three numbers.
     unsafe {
-        let sums = border.write(sums.cast::<ExactSum>(), triangles_len)?;
+        let words = border.write(sums, sums_len)?;
         let transforms = border.write(transforms, usize::from(!transforms.is_null()))?;
         let triangles = border.read(triangles.cast::<Triangle>(), triangles_len)?;
         let edges = border.read(edges, edges_len)?;
         let modes = border.read(modes, len)?;
         let mut fft = HostFft::new(&mut border, fft)?;
+        let sums = sums_of(words, triangles_len)?;
         let fields = border.write(fields, fields_len)?;
         let scratch = border.scratch(scratch, scratch_len)?;
         let exec = HostExec::new(&mut border, exec)?;
@@ -640,24 +698,25 @@ unsafe fn whole<H: Hook>(
 
 /// The sums of triangles as numbers, each rounded once.
 ///
-/// Out: values  len numbers: sum over cells of D_i D_j D_k
-/// In:  sums    FIXPAIR_BISPECTRUM_WORDS * len integers
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE if a sum lost a term that was not finite
+/// Out: values  values_len numbers, one a triangle: sum over cells of D_i D_j D_k
+/// In:  sums    sums_len = FIXPAIR_BISPECTRUM_WORDS * values_len integers
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_NOT_FINITE if a sum lost a term that was not finite
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_bispectrum_values(
     values: *mut f64,
+    values_len: usize,
     sums: *const i64,
-    len: usize,
+    sums_len: usize,
 ) -> fixpair_status_t {
     code((|| {
         let mut border = Border::new();
-        // SAFETY: the caller's promise; a sum is as many integers as stated.
-        let (values, sums) =
-            unsafe { (border.write(values, len)?, border.read(sums.cast::<ExactSum>(), len)?) };
-        bispectrum::bispectrum_values(values, sums)
+        // SAFETY: the caller's promise.
+        let (values, words) = unsafe { (border.write(values, values_len)?, border.read(sums, sums_len)?) };
+        check_words(sums_len, values_len)?;
+        bispectrum::bispectrum_values(values, ExactSum::of_words(words))
     })())
 }
 
@@ -667,7 +726,9 @@ pub unsafe extern "C" fn fixpair_bispectrum_values(
 /// In:     counts    len counts of fixpair_triangle_counts
 ///         n         cells on a side of the mesh
 ///         box_size  L; B comes in its unit to the sixth power
-///         scale     what the modes have yet to be multiplied by: 1, or 1/n^3 after a forward transform that does not divide
+///         scale     of the field, which enters three times: what makes its modes those of f(x) = sum_k f_k exp(+i k.x). 1/(sum of weights) for the
+///                   density contrast of a deposit, 1/n^3 for any other field (both after a transform that does not divide), 1 for
+///                   modes of this library and those that fixpair_compensate_f64 brought to scale
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_MESH_SIZE for n = 0, FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_RANGE for a
 ///          box that is not positive or a result that overflows
 ///
@@ -782,6 +843,7 @@ mod tests {
             let add = |triangles: &[u32; 6], sums: *mut i64, len: usize| {
                 fixpair_bispectrum_sums_f64(
                     sums,
+                    2 * FIXPAIR_BISPECTRUM_WORDS,
                     triangles.as_ptr(),
                     2,
                     fields.as_ptr(),
@@ -799,7 +861,10 @@ mod tests {
             assert_eq!(add(&missing, words, mesh.len()), Error::Length.code());
             assert_eq!(add(&good, words, mesh.len() - 3), Error::Length.code());
             assert_eq!(add(&good, mesh.as_ptr().cast_mut().cast(), mesh.len()), Error::Overlap.code());
-            assert_eq!(fixpair_bispectrum_values(values.as_mut_ptr(), words, 2), 0);
+            assert_eq!(
+                fixpair_bispectrum_values(values.as_mut_ptr(), 2, words, 2 * FIXPAIR_BISPECTRUM_WORDS),
+                0
+            );
         }
         assert_eq!(values, [expected; 2]);
     }

@@ -43,7 +43,9 @@ pub unsafe extern "C" fn fixpair_correlation_modes_scratch(
 /// In/out: modes         len reals: f, replaced
 /// In:     other         len reals: g; NULL for f itself
 ///         compensation, other_compensation  as in fixpair_power_sums_*; the second is not read where other is NULL
-///         scale         of both fields together: 1/n^6 for modes of un-normalised transforms
+///         scale         of both fields together, the product of what makes the modes of each those of f(x) = sum_k f_k exp(+i k.x): 1/(sum of
+///                       weights)^2 for the density contrast of a deposit, 1/n^6 for any other field (both after a transform that does
+///                       not divide), 1 for modes of this library
 ///         brick         of Fourier space
 ///         scratch       scratch_len bytes, see fixpair_correlation_modes_scratch
 ///         exec          or NULL

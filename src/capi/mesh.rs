@@ -80,7 +80,7 @@ unsafe fn put(out: *mut fixpair_brick, brick: impl FnOnce() -> Result<Brick>) ->
 ///      space    FIXPAIR_SPACE_CONFIGURATION or FIXPAIR_SPACE_FOURIER
 ///      padding  unused modes (twice as many reals) after each x plane: 0, or fixpair_fft_padding_f64(n) to be faster where
 ///               n is a power of two; the same for both spaces
-/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_MESH_SIZE, FIXPAIR_ERROR_CHOICE, FIXPAIR_ERROR_OVERFLOW
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _MESH_SIZE, _CHOICE, _OVERFLOW
 ///
 /// # Safety
 /// `brick` is null or points to a brick.
@@ -137,8 +137,8 @@ pub unsafe extern "C" fn fixpair_brick_transposed_slab(
 /// Checks a brick, and says how many reals its array must at least have.
 ///
 /// Out: reals  from the first element to the end of the last; for an in-place transform take the larger of both spaces
-/// In:  brick
-/// Returns: 0, or why the brick is refused
+/// In:  brick  in configuration space it may run over the edge (fixpair_brick_with_ghosts)
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, or why the brick is refused
 ///
 /// # Safety
 /// Both pointers are null or point to one value.
@@ -151,7 +151,10 @@ pub unsafe extern "C" fn fixpair_brick_reals(
         let mut border = Border::new();
         // SAFETY: the caller's promise.
         let (reals, brick) = unsafe { (border.write_one(reals)?, border.read_one(brick)?) };
-        *reals = brick.check()?.reals();
+        *reals = match space(brick.space)? {
+            Space::Configuration => super::pm::region(brick)?.reals(),
+            Space::Fourier => brick.check()?.reals(),
+        };
         Ok(())
     })())
 }

@@ -8,8 +8,8 @@ use super::exec::{HostExec, fixpair_exec};
 use super::mesh::fixpair_brick;
 use super::status::{code, fixpair_status_t};
 use crate::estimate::binning::Bin;
-use crate::estimate::compensation::Compensation;
-use crate::estimate::power::{power_sums, power_sums_scratch, shot_noise, subtract_shot_noise};
+use crate::estimate::compensation::{Compensation, compensate, compensate_scratch};
+use crate::estimate::power::{power_sums, power_sums_scratch, shot_noise_of, subtract_shot_noise};
 use crate::pm::Window;
 use crate::real::Real;
 use crate::scratch::Layout;
@@ -58,8 +58,11 @@ pub(super) unsafe fn fields<'a, T>(
     Ok((out, count))
 }
 
-/// Scratch of fixpair_power_sums_*: partial sums for at most 64 pieces of the work, or 64 MiB of them (two pieces if one is more); 4 bytes for each |n|^2
-/// below the last edge (at most 3 (n/2)^2 + 1 of them) and for each of 2 (n/2)^2 + 1 squares of (i, j); and a few rows for each piece and pair.
+/// Scratch of fixpair_power_sums_*, in bytes. For each of w pieces of the work: 8 words, words from fixpair_binning_lengths; 128 for each bin, pair and
+/// parity (even, odd) that orders has; and 192 for each l of the brick; and at most 512. Besides: 4 for each |n|^2 below the last edge (at most
+/// 3 (n/2)^2 + 1 of them); 4 for each of 2 (n/2)^2 + 1 values of i^2 + j^2, unless a second coordinate has a line of sight other than z; 24 for each l; for each pair 8 for each
+/// l and 4 n; 8 for each second edge; and a few cache lines. w is at most 64, and at most as many as have 64 MiB of words together, or 2; for the
+/// whole mesh it is at most n/2 + 1.
 ///
 /// Out: scratch
 /// In:  brick      of Fourier space
@@ -97,14 +100,14 @@ pub unsafe extern "C" fn fixpair_power_sums_scratch(
 ///     int64_t *sums = calloc(words, sizeof *sums);         see fixpair_binning_lengths
 ///     fixpair_power_sums_f64(sums, words, ...);            on each rank, then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
 ///     fixpair_binning_read(bins, bins_len, P, P_len, sums, words, &binning, pairs_len);
-///     fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);
+///     fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);    L*L*L/(W*W) for a deposit whose weights sum to W
 ///     fixpair_subtract_shot_noise(P, P_len, pairs, pairs_len, bins, bins_len, binning.orders, &noise, 1);    if wanted
 ///
 /// The bits do not depend on threads or on how the mesh is cut along x or y; bricks that cut axis 2 agree to rounding.
 ///
 /// In/out: sums          sums_len integers, zeros at first
 /// In:     fields        fields_len <= 8 pointers to modes on the brick, len reals each
-///         pairs         pairs_len pairs of field numbers: {0, 0} for the spectrum of the first, {0, 1} for its cross spectrum with the second
+///         pairs         2 pairs_len numbers of fields: {0, 0, 0, 1} for the spectrum of the first and its cross spectrum with the second
 ///         compensation  one for each field: FIXPAIR_COMPENSATION_ALIASED + FIXPAIR_WINDOW_CIC and so on; NULL for none
 ///         brick         of Fourier space
 ///         binning
@@ -124,7 +127,7 @@ pub unsafe extern "C" fn fixpair_power_sums_f64(
     fields: *const *const f64,
     fields_len: usize,
     len: usize,
-    pairs: *const [usize; 2],
+    pairs: *const usize,
     pairs_len: usize,
     compensation: *const i32,
     brick: *const fixpair_brick,
@@ -164,7 +167,7 @@ pub unsafe extern "C" fn fixpair_power_sums_f32(
     fields: *const *const f32,
     fields_len: usize,
     len: usize,
-    pairs: *const [usize; 2],
+    pairs: *const usize,
     pairs_len: usize,
     compensation: *const i32,
     brick: *const fixpair_brick,
@@ -199,7 +202,7 @@ unsafe fn add<T: Real>(
     fields: *const *const T,
     fields_len: usize,
     len: usize,
-    pairs: *const [usize; 2],
+    pairs: *const usize,
     pairs_len: usize,
     compensation: *const i32,
     brick: *const fixpair_brick,
@@ -209,11 +212,11 @@ unsafe fn add<T: Real>(
     exec: *const fixpair_exec,
 ) -> Result<()> {
     let mut border = Border::new();
-    // SAFETY: the caller's promise.
+    // SAFETY: the caller's promise; a pair is two numbers.
     unsafe {
         let sums = border.write(sums, sums_len)?;
         let (fields, count) = self::fields(&mut border, fields, fields_len, len)?;
-        let pairs = border.read(pairs, pairs_len)?;
+        let pairs = border.read(pairs.cast::<[usize; 2]>(), pairs_len)?;
         let mut chosen = [Compensation::None; FIELDS];
         for (chosen, value) in
             chosen.iter_mut().zip(border.read_optional(compensation, count)?.unwrap_or(&[]))
@@ -231,11 +234,11 @@ unsafe fn add<T: Real>(
 /// The shot noise of particles: V sum w^2/(sum w)^2, or V/N without weights, V = L^3.
 ///
 /// Out: noise      in the unit of L^3
-/// In:  weights    one for each particle; NULL for equal weights
+/// In:  weights    of particle i at weights[i * weights_stride]; NULL, with a stride of 0, for equal weights
 ///      particles  how many
 ///      box_size   L
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive, no particles, or weights
-///          that sum to 0
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive, no particles,
+///          weights that sum to 0, or weights with a stride of 0
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -243,11 +246,12 @@ unsafe fn add<T: Real>(
 pub unsafe extern "C" fn fixpair_shot_noise_f64(
     noise: *mut f64,
     weights: *const f64,
-    particles: u64,
+    weights_stride: usize,
+    particles: usize,
     box_size: f64,
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
-    code(unsafe { noise_of(noise, weights, particles, box_size) })
+    code(unsafe { noise_of(noise, weights, weights_stride, particles, box_size) })
 }
 
 /// fixpair_shot_noise_f64 for weights in single precision.
@@ -258,20 +262,34 @@ pub unsafe extern "C" fn fixpair_shot_noise_f64(
 pub unsafe extern "C" fn fixpair_shot_noise_f32(
     noise: *mut f64,
     weights: *const f32,
-    particles: u64,
+    weights_stride: usize,
+    particles: usize,
     box_size: f64,
 ) -> fixpair_status_t {
     // SAFETY: the caller's promise.
-    code(unsafe { noise_of(noise, weights, particles, box_size) })
+    code(unsafe { noise_of(noise, weights, weights_stride, particles, box_size) })
 }
 
-unsafe fn noise_of<T: Real>(noise: *mut f64, weights: *const T, particles: u64, box_size: f64) -> Result<()> {
+unsafe fn noise_of<T: Real>(
+    noise: *mut f64,
+    weights: *const T,
+    weights_stride: usize,
+    particles: usize,
+    box_size: f64,
+) -> Result<()> {
     let mut border = Border::new();
-    let count =
-        if weights.is_null() { 0 } else { usize::try_from(particles).map_err(|_| Error::Overflow)? };
     // SAFETY: the caller's promise.
-    let (noise, weights) = unsafe { (border.write_one(noise)?, border.read_optional(weights, count)?) };
-    *noise = shot_noise(weights, particles, box_size)?;
+    let noise = unsafe { border.write_one(noise)? };
+    let weighted = !weights.is_null();
+    if weighted {
+        if weights_stride == 0 {
+            return Err(Error::Range);
+        }
+        border.read_strided(weights, weights_stride, particles)?;
+    }
+    // SAFETY: these lie in memory, aligned (checked at the border); the rest is the caller's promise.
+    let weight = |i: usize| unsafe { *weights.add(i * weights_stride) }.to_f64();
+    *noise = shot_noise_of(weighted.then(|| (0..particles).map(weight)), particles as u64, box_size)?;
     Ok(())
 }
 
@@ -281,7 +299,7 @@ unsafe fn noise_of<T: Real>(noise: *mut f64, weights: *const T, particles: u64, 
 /// well below the Nyquist frequency.
 ///
 /// In/out: values  values_len numbers: the normalised spectra of all pairs
-/// In:     pairs   pairs_len pairs of field numbers
+/// In:     pairs   2 pairs_len numbers of fields
 ///         bins    bins_len bins; empty ones stay 0
 ///         orders  as in the binning
 ///         noise   noise_len values: of each field
@@ -293,7 +311,7 @@ unsafe fn noise_of<T: Real>(noise: *mut f64, weights: *const T, particles: u64, 
 pub unsafe extern "C" fn fixpair_subtract_shot_noise(
     values: *mut f64,
     values_len: usize,
-    pairs: *const [usize; 2],
+    pairs: *const usize,
     pairs_len: usize,
     bins: *const Bin,
     bins_len: usize,
@@ -303,11 +321,107 @@ pub unsafe extern "C" fn fixpair_subtract_shot_noise(
 ) -> fixpair_status_t {
     code((|| {
         let mut border = Border::new();
-        // SAFETY: the caller's promise.
+        // SAFETY: the caller's promise; a pair is two numbers.
         unsafe {
             let values = border.write(values, values_len)?;
-            let (pairs, bins) = (border.read(pairs, pairs_len)?, border.read(bins, bins_len)?);
+            let pairs = border.read(pairs.cast::<[usize; 2]>(), pairs_len)?;
+            let bins = border.read(bins, bins_len)?;
             subtract_shot_noise(values, pairs, bins, orders, border.read(noise, noise_len)?)
         }
     })())
+}
+
+/// Scratch of fixpair_compensate_*: n/2 + 1 double.
+///
+/// Out: scratch
+/// In:  brick  of Fourier space
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, or why the brick is refused
+///
+/// # Safety
+/// Pointers are null or point to one value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_compensate_scratch(
+    scratch: *mut Layout,
+    brick: *const fixpair_brick,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise.
+        let (scratch, brick) = unsafe { (border.write_one(scratch)?, border.read_one(brick)?) };
+        *scratch = compensate_scratch(&brick.check()?)?;
+        Ok(())
+    })())
+}
+
+/// f_k <- scale f_k, compensated: for functions that take modes as they are, as fixpair_bispectrum_* and fixpair_shell_modes_* do.
+///
+/// fixpair_power_sums_* and fixpair_correlation_modes_* compensate by themselves: modes that were compensated here go there with
+/// FIXPAIR_COMPENSATION_NONE.
+///
+/// In/out: modes         len reals
+/// In:     compensation  FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC and so on
+///         scale         of the field: what makes its modes those of f(x) = sum_k f_k exp(+i k.x). 1/(sum of weights) for the density contrast of a
+///                       deposit, 1/n^3 for any other field (both after a transform that does not divide), 1 for modes of this library
+///         brick         of Fourier space
+///         scratch       scratch_len bytes, see fixpair_compensate_scratch
+///         exec          or NULL
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _SCRATCH, _CHOICE, _NOT_FINITE for the scale, or why the brick is refused;
+///          FIXPAIR_ERROR_HOOK, after which modes are undefined. Modes are not checked.
+/// Cost: one pass over the modes
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_compensate_f64(
+    modes: *mut f64,
+    len: usize,
+    compensation: i32,
+    scale: f64,
+    brick: *const fixpair_brick,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { divide(modes, len, compensation, scale, brick, scratch, scratch_len, exec) })
+}
+
+/// fixpair_compensate_f64 in single precision.
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_compensate_f32(
+    modes: *mut f32,
+    len: usize,
+    compensation: i32,
+    scale: f64,
+    brick: *const fixpair_brick,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    // SAFETY: the caller's promise.
+    code(unsafe { divide(modes, len, compensation, scale, brick, scratch, scratch_len, exec) })
+}
+
+unsafe fn divide<T: Real>(
+    modes: *mut T,
+    len: usize,
+    compensation: i32,
+    scale: f64,
+    brick: *const fixpair_brick,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> Result<()> {
+    let mut border = Border::new();
+    // SAFETY: the caller's promise.
+    unsafe {
+        let modes = border.write(modes, len)?;
+        let chosen = self::compensation(compensation)?;
+        let brick = border.read_one(brick)?.check()?;
+        let scratch = border.scratch(scratch, scratch_len)?;
+        compensate(modes, chosen, scale, &brick, scratch, &HostExec::new(&mut border, exec)?)
+    }
 }

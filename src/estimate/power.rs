@@ -174,6 +174,18 @@ fn imaginary_part<T: Real>(f: &[T; 2], g: &[T; 2]) -> f64 {
 /// `Length` for weights of another number than `particles`; `Range` for a box that is not positive, no particles, or weights that sum to 0;
 /// `NotFinite`.
 pub fn shot_noise<T: Real>(weights: Option<&[T]>, particles: u64, box_size: f64) -> Result<f64> {
+    if weights.is_some_and(|weights| weights.len() as u64 != particles) {
+        return Err(Error::Length);
+    }
+    shot_noise_of(weights.map(|weights| weights.iter().map(|weight| weight.to_f64())), particles, box_size)
+}
+
+/// [`shot_noise`] of as many weights as particles.
+pub(crate) fn shot_noise_of(
+    weights: Option<impl Iterator<Item = f64>>,
+    particles: u64,
+    box_size: f64,
+) -> Result<f64> {
     if !box_size.is_finite() {
         return Err(Error::NotFinite);
     }
@@ -182,11 +194,8 @@ pub fn shot_noise<T: Real>(weights: Option<&[T]>, particles: u64, box_size: f64)
     }
     let volume = box_size * box_size * box_size;
     let Some(weights) = weights else { return Ok(volume / particles as f64) };
-    if weights.len() as u64 != particles {
-        return Err(Error::Length);
-    }
     let (mut sum, mut squares) = (0.0, 0.0);
-    for weight in weights.iter().map(|weight| weight.to_f64()) {
+    for weight in weights {
         sum += weight;
         squares += weight * weight;
     }
