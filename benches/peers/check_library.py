@@ -159,14 +159,6 @@ def particles(library):
 # ---------------------------------------------------------------------------------------------------------- bispectrum
 
 
-def divide_by_window(modes, window):
-    """Bk does it; fixpair's bispectrum takes modes as they are. All modes of the half space, in place."""
-    n = modes.shape[0]
-    complex_modes = modes.view(np.complex64 if modes.dtype == np.float32 else np.complex128)
-    sinc = np.sinc(np.fft.fftfreq(n)) ** window  # even, so that -n/2 stands for n/2 as well
-    complex_modes /= sinc[:, None, None] * sinc[None, :, None] * sinc[None, None, : n // 2 + 1]
-
-
 def pylians_bispectrum(library):
     field, fundamental = skewed_field(N), 2.0 * np.pi / BOX
     for n1, n2, turn in TRIANGLES:
@@ -181,7 +173,7 @@ def pylians_bispectrum(library):
         row("N_triangles", "Bk.triangles N^6", "triangle_counts", abs(np.rint(theirs.triangles[0] * float(N) ** 6) - count), 0, case)
         for dtype, real in PRECISIONS:
             modes = library.modes(field, dtype)
-            divide_by_window(modes, CIC)
+            library.compensate(modes, WINDOW + CIC)
             sums = library.bispectrum_sums(modes, triangles, edges)
             total = library.bispectrum(sums.sum(axis=0)[None, :], [count], N, BOX)
             parts = library.bispectrum(sums, counts, N, BOX)

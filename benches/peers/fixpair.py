@@ -56,15 +56,15 @@ class Fft(ctypes.Structure):
 LETTERS = {"p": pointer, "n": size, "d": double, "i": ctypes.c_int32, "u": ctypes.c_uint64, "w": ctypes.c_uint32}
 SIGNATURES = {
     "brick_whole": "pnin", "edges_uniform": "pndd", "binning_init": "ppn", "binning_lengths": "ppppn", "binning_read": "pnpnpnpn",
-    "binning_normalise": "pnpnwd", "power_sums_scratch": "pppn", "correlation_modes_scratch": "pp", "correlation_sums_scratch": "pppn",
+    "binning_normalise": "pnpnwd", "power_sums_scratch": "pppn", "compensate_scratch": "pp", "correlation_modes_scratch": "pp", "correlation_sums_scratch": "pppn",
     "subtract_shot_noise": "pnpnpnwpn", "closed_triangle_count": "ppnp",
-    "closed_triangles": "pnpnp", "triangle_counts_scratch": "ppnpnn", "triangle_counts": "ppnpnnpnp", "bispectrum_values": "ppn",
+    "closed_triangles": "pnpnp", "triangle_counts_scratch": "ppnpnn", "triangle_counts": "ppnpnnpnp", "bispectrum_values": "pnpn",
     "bispectrum_normalise": "ppnndd", "bispectrum_shot_noise": "ppnpnd", "bispectrum_reduced": "pppnpn",
 }
 TWINS = {
     "fft_tables_scratch": "pn", "fft_tables_init": "pnn", "fft_scratch": "pn", "fft_init": "ppnnpnp", "deposit_scratch": "ppni",
-    "deposit": "pnpppndidpnp", "power_sums": "pnpnnpnppppnp", "shot_noise": "ppud",
-    "correlation_modes": "ppniidppnp", "correlation_sums": "pnpnnpppnp", "bispectrum_meshes": "ppn", "bispectrum_scratch": "ppnn", "bispectrum": "pppnpnpnppnpnp",
+    "deposit": "pnpppndidpnp", "power_sums": "pnpnnpnppppnp", "shot_noise": "ppnnd",
+    "correlation_modes": "ppniidppnp", "correlation_sums": "pnpnnpppnp", "bispectrum_meshes": "ppn", "bispectrum_scratch": "ppnn", "bispectrum": "pnppnpnpnppnpnp", "compensate": "pnidppnp",
 }
 SIGNATURES |= {f"{name}_{real}": signature for name, signature in TWINS.items() for real in REAL.values()}
 
@@ -221,7 +221,7 @@ class Library:
     def shot_noise(self, weights, particles, box):
         noise = double()
         real = "f64" if weights is None else REAL[weights.dtype]
-        self.call(f"shot_noise_{real}", noise, weights, particles, box)
+        self.call(f"shot_noise_{real}", noise, weights, 0 if weights is None else 1, particles, box)
         return noise.value
 
     def subtract_shot_noise(self, power, bins, noise, orders=(0,)):
@@ -229,6 +229,12 @@ class Library:
         pairs, noise = np.zeros((1, 2), np.uintp), np.array([noise])
         self.call("subtract_shot_noise", power, power.size, pairs, 1, bins, bins.size, bits(orders), noise, 1)
         return power
+
+    def compensate(self, modes, compensation):
+        """In place."""
+        brick = self.transform(modes.shape[0], modes.dtype).fourier
+        scratch = self.scratch("compensate_scratch", brick)
+        self.call(f"compensate_{REAL[modes.dtype]}", modes, modes.size, compensation, 1.0, brick, *scratch, None)
 
     # ------------------------------------------------------------------------------------------------------- bispectrum
 
@@ -256,7 +262,7 @@ class Library:
         fields = aligned(reals.value, modes.dtype)
         sums = np.zeros((len(triangles), BISPECTRUM_WORDS), np.int64)
         scratch = self.scratch(f"bispectrum_scratch_{real}", fft, shells, len(triangles))
-        self.call(f"bispectrum_{real}", sums, None, triangles, len(triangles), edges, len(edges), modes, modes.size, fft, fields,
+        self.call(f"bispectrum_{real}", sums, sums.size, None, triangles, len(triangles), edges, len(edges), modes, modes.size, fft, fields,
                   fields.size, *scratch, None)
         return sums
 
@@ -264,7 +270,7 @@ class Library:
         """B of modes that came from `forward`."""
         sums, counts = integers(sums, np.int64), integers(counts)
         values = np.empty(len(sums))
-        self.call("bispectrum_values", values, sums, len(sums))
+        self.call("bispectrum_values", values, values.size, sums, sums.size)
         self.call("bispectrum_normalise", values, counts, len(sums), n, box, 1.0 / float(n) ** 3)
         return values
 
