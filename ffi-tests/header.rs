@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 16] = [
+const SECTIONS: [(&str, &str); 19] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -16,10 +16,13 @@ const SECTIONS: [(&str, &str); 16] = [
     ("stages", "Initial conditions stage by stage"),
     ("particles", "Particles"),
     ("pm", "Deposit and read-out"),
+    ("cells", "Ghost planes and interlacing"),
     ("binning", "Bins of spectra and correlation functions"),
     ("power", "Power spectrum"),
     ("correlation", "Correlation function"),
+    ("triangles", "Triangles"),
     ("bispectrum", "Bispectrum"),
+    ("bispectrum_values", "From sums to bispectra"),
 ];
 
 /// Files outside `src/capi` that define structs of the interface.

@@ -1389,26 +1389,6 @@ fixpair_status_t fixpair_particle_ids(uint64_t *ids,
  */
 
 /*
- * The cells that the particles of a brick touch: the brick and, on each axis that it does not span, ghost planes before and after it.
- *
- * The particles are those with start H <= x < (start + count) H, H = L/n; a rounding error beyond counts as inside. Planes before and
- * after: NGP 0 and 1, CIC 0 and 1, TSC 1 and 2, PCS 1 and 2 for mesh points at i H; NGP 0 and 0, CIC 1 and 1, TSC 1 and 1, PCS 2
- * and 2 at (i + 1/2) H. If they meet round the mesh, the axis is whole. The result may run over the edge of the mesh: on each
- * axis it holds the cells (start + a) mod n, 0 <= a < count. fixpair_deposit, fixpair_read_out, fixpair_add_cells, fixpair_copy_cells and
- * fixpair_brick_reals take such bricks, other functions do not. Its cells lie close together, z fastest: its array has count[0] count[1] count[2] reals.
- *
- * Out: ghosted
- * In:  brick   of configuration space: the cells that this process owns
- *      window  FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS
- *      shift   of the mesh points, in cells: 0, or 1/2 for the second mesh of interlacing; 0 <= shift < 1
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _CHOICE, _RANGE, _NOT_FINITE, or why the brick is refused
- */
-fixpair_status_t fixpair_brick_with_ghosts(struct fixpair_brick *ghosted,
-                                           const struct fixpair_brick *brick,
-                                           int32_t window,
-                                           double shift);
-
-/*
  * Scratch of fixpair_deposit_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded
  * up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
  *
@@ -1539,6 +1519,31 @@ fixpair_status_t fixpair_read_out_f32(float *values,
                                       void *scratch,
                                       size_t scratch_len,
                                       const struct fixpair_exec *exec);
+
+/*
+ * Ghost planes and interlacing
+ * ============================
+ */
+
+/*
+ * The cells that the particles of a brick touch: the brick and, on each axis that it does not span, ghost planes before and after it.
+ *
+ * The particles are those with start H <= x < (start + count) H, H = L/n; a rounding error beyond counts as inside. Planes before and
+ * after: NGP 0 and 1, CIC 0 and 1, TSC 1 and 2, PCS 1 and 2 for mesh points at i H; NGP 0 and 0, CIC 1 and 1, TSC 1 and 1, PCS 2
+ * and 2 at (i + 1/2) H. If they meet round the mesh, the axis is whole. The result may run over the edge of the mesh: on each
+ * axis it holds the cells (start + a) mod n, 0 <= a < count. fixpair_deposit, fixpair_read_out, fixpair_add_cells, fixpair_copy_cells and
+ * fixpair_brick_reals take such bricks, other functions do not. Its cells lie close together, z fastest: its array has count[0] count[1] count[2] reals.
+ *
+ * Out: ghosted
+ * In:  brick   of configuration space: the cells that this process owns
+ *      window  FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS
+ *      shift   of the mesh points, in cells: 0, or 1/2 for the second mesh of interlacing; 0 <= shift < 1
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _CHOICE, _RANGE, _NOT_FINITE, or why the brick is refused
+ */
+fixpair_status_t fixpair_brick_with_ghosts(struct fixpair_brick *ghosted,
+                                           const struct fixpair_brick *brick,
+                                           int32_t window,
+                                           double shift);
 
 /*
  * Adds to a region the cells that another one holds too: folds ghost planes after a deposit.
@@ -2030,8 +2035,8 @@ fixpair_status_t fixpair_correlation_sums_f32(int64_t *sums,
                                               const struct fixpair_exec *exec);
 
 /*
- * Bispectrum
- * ==========
+ * Triangles
+ * =========
  */
 
 /*
@@ -2118,6 +2123,11 @@ fixpair_status_t fixpair_triangle_counts(uint64_t *counts,
                                          void *scratch,
                                          size_t scratch_len,
                                          const struct fixpair_exec *exec);
+
+/*
+ * Bispectrum
+ * ==========
+ */
 
 /*
  * Copies the modes of one shell, lo <= |n|^2 < hi, and makes all others zero. Their inverse transform is what fixpair_bispectrum_sums_f64
@@ -2314,6 +2324,11 @@ fixpair_status_t fixpair_bispectrum_f32(int64_t *sums,
                                         void *scratch,
                                         size_t scratch_len,
                                         const struct fixpair_exec *exec);
+
+/*
+ * From sums to bispectra
+ * ======================
+ */
 
 /*
  * The sums of triangles as numbers, each rounded once.

@@ -9,7 +9,9 @@
 
 pub mod binning;
 pub mod bispectrum;
+pub mod bispectrum_values;
 pub mod built_in;
+pub mod cells;
 pub mod correlation;
 pub mod cosmology;
 pub mod exec;
@@ -23,5 +25,6 @@ pub mod pm;
 pub mod power;
 pub mod stages;
 pub mod status;
+pub mod triangles;
 
 mod border;
