@@ -542,6 +542,7 @@ mod tests {
     use std::vec;
     use std::vec::Vec;
 
+    use super::super::bispectrum_values::fixpair_bispectrum_values;
     use super::*;
     use crate::mesh::{Brick, Space};
     use crate::status::Error;
