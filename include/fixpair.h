@@ -1622,7 +1622,7 @@ fixpair_status_t fixpair_copy_cells_f32(float *target,
  * k = 0.1 h/Mpc and 4.5% at 0.2. PCS is within 0.1% there: prefer it for such particles.
  *
  * A mode with a number n/2 stands for +n/2 and -n/2, odd images of each other. It becomes modes/2, the mean of both, so that the field
- * remains real.
+ * remains real; its power is about half of one mode's: end bins at |n|^2 = (n/2)^2.
  *
  * In/out: modes    len reals: modes of a deposit with shift 0
  * In:     shifted  len reals: of the same particles with shift 1/2
@@ -1861,7 +1861,8 @@ fixpair_status_t fixpair_shot_noise_f32(double *noise,
                                         double box_size);
 
 /*
- * Subtracts shot noise from the monopoles of auto spectra: all else has none and stays as it is.
+ * Subtracts shot noise from the monopoles of auto spectra. Cross spectra of different particles have none. Other multipoles stay as they are:
+ * their noise (2l + 1) noise <L_l> vanishes where a bin holds many modes in all directions, not in wedges.
  *
  * Flat noise is right for meshes compensated by FIXPAIR_COMPENSATION_ALIASED, and for interlaced ones compensated by FIXPAIR_COMPENSATION_WINDOW
  * well below the Nyquist frequency.
@@ -2363,12 +2364,15 @@ fixpair_status_t fixpair_bispectrum_normalise(double *values,
                                               double scale);
 
 /*
- * The shot noise of B: (P_i + P_j + P_k) noise + noise^2.
+ * The shot noise of B of points of equal weight: (P_i + P_j + P_k) noise + noise^2.
+ *
+ * With weights noise is V sum w^2/(sum w)^2 in the first term, and the second is V^2 sum w^3/(sum w)^3, which is larger than noise^2:
+ * subtract that difference too.
  *
  * Out: out        triangles_len numbers
  * In:  triangles  3 triangles_len numbers of shells, counted from 0
  *      power      shells values of P, free of shot noise
- *      noise      1/n for points of number density n, V sum w^2/(sum w)^2 for weighted ones
+ *      noise      1/n for points of number density n
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for shells that are not there or a result that overflows
  */
 fixpair_status_t fixpair_bispectrum_shot_noise(double *out,

@@ -232,8 +232,9 @@ static int measure_bispectrum(struct spectra *spectra, struct spectra_result *re
 static int reduce(const struct spectra *spectra, struct spectra_result *result, double *power, double *bispectrum) {
     size_t count = spectra->wide.count;
     double noise = spectra->choice.subtract_noise ? result->noise : 0.0;
-    for (size_t s = 0; s < count; s++) power[s] = result->wide_power[s] - noise;
+    for (size_t s = 0; s < count; s++) power[s] = result->wide_power[s] - result->noise;
     TRY(fixpair_bispectrum_shot_noise(result->bispectrum_noise, spectra->triangles, count, power, count, result->noise));
+    for (size_t s = 0; s < count; s++) power[s] = result->wide_power[s] - noise;
     for (size_t s = 0; s < count; s++) {
         bispectrum[s] = result->bispectrum[s] - (spectra->choice.subtract_noise ? result->bispectrum_noise[s] : 0.0);
     }

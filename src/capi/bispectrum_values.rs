@@ -61,12 +61,15 @@ pub unsafe extern "C" fn fixpair_bispectrum_normalise(
     })())
 }
 
-/// The shot noise of B: (P_i + P_j + P_k) noise + noise^2.
+/// The shot noise of B of points of equal weight: (P_i + P_j + P_k) noise + noise^2.
+///
+/// With weights noise is V sum w^2/(sum w)^2 in the first term, and the second is V^2 sum w^3/(sum w)^3, which is larger than noise^2:
+/// subtract that difference too.
 ///
 /// Out: out        triangles_len numbers
 /// In:  triangles  3 triangles_len numbers of shells, counted from 0
 ///      power      shells values of P, free of shot noise
-///      noise      1/n for points of number density n, V sum w^2/(sum w)^2 for weighted ones
+///      noise      1/n for points of number density n
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for shells that are not there or a result that overflows
 ///
 /// # Safety

@@ -184,7 +184,7 @@ unsafe fn shared<T: Real>(
 /// k = 0.1 h/Mpc and 4.5% at 0.2. PCS is within 0.1% there: prefer it for such particles.
 ///
 /// A mode with a number n/2 stands for +n/2 and -n/2, odd images of each other. It becomes modes/2, the mean of both, so that the field
-/// remains real.
+/// remains real; its power is about half of one mode's: end bins at |n|^2 = (n/2)^2.
 ///
 /// In/out: modes    len reals: modes of a deposit with shift 0
 /// In:     shifted  len reals: of the same particles with shift 1/2

@@ -293,7 +293,8 @@ unsafe fn noise_of<T: Real>(
     Ok(())
 }
 
-/// Subtracts shot noise from the monopoles of auto spectra: all else has none and stays as it is.
+/// Subtracts shot noise from the monopoles of auto spectra. Cross spectra of different particles have none. Other multipoles stay as they are:
+/// their noise (2l + 1) noise <L_l> vanishes where a bin holds many modes in all directions, not in wedges.
 ///
 /// Flat noise is right for meshes compensated by FIXPAIR_COMPENSATION_ALIASED, and for interlaced ones compensated by FIXPAIR_COMPENSATION_WINDOW
 /// well below the Nyquist frequency.

@@ -5,7 +5,8 @@
 
 use crate::status::{Error, Result};
 
-/// Relative distance at which x^2 is taken for an integer: far above the rounding of user's tables, far below 1/|n|^2 of any mesh.
+/// Relative distance at which x^2 is taken for an integer: far above the rounding of users' tables, and below 1/|n|^2 for
+/// |n| < 3e4; beyond, edges go to the nearest integer.
 const SNAP: f64 = 1e-9;
 
 /// The integer edge at |n| = x.

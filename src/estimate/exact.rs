@@ -123,8 +123,9 @@ impl ExactSum {
         let Some(top) = sum.value.iter().rposition(|&limb| limb != 0) else {
             return 0.0;
         };
-        // At least 97 bits: rounding them once is rounding the sum once, given a last bit that stands for all below.
-        let first = top.saturating_sub(3);
+        // 65 bits or more, and no more than 127 even of a last limb that took carries: rounding them once is rounding the sum once, given a last
+        // bit that stands for all below.
+        let first = top.saturating_sub(2);
         let mut wide =
             sum.value[first..=top].iter().rev().fold(0_u128, |wide, &limb| wide << 32 | limb as u128);
         if sum.value[..first].iter().any(|&limb| limb != 0) {
@@ -199,6 +200,20 @@ mod tests {
         let terms = terms();
         assert_eq!(sum(terms.iter().map(|x| -x)).value(), -sum(terms.iter().copied()).value());
         assert_eq!(sum(terms.iter().flat_map(|&x| [x, -x])).value(), 0.0);
+    }
+
+    #[test]
+    fn many_of_the_largest_terms_are_summed_exactly() {
+        for count in [1000, 5000, 1 << 20] {
+            assert_eq!(
+                sum((0..count).map(|_| libm::scalbn(1.0, 659))).value(),
+                f64::from(count) * libm::scalbn(1.0, 659)
+            );
+            assert_eq!(
+                sum((0..count).map(|_| -libm::scalbn(1.0, 659))).value(),
+                -f64::from(count) * libm::scalbn(1.0, 659)
+            );
+        }
     }
 
     #[test]

@@ -207,8 +207,8 @@ pub(crate) fn shot_noise_of(
     }
 }
 
-/// Subtracts shot noise from the monopoles of auto spectra, in place: P_0 <- P_0 - noise where a bin is not empty. Cross spectra and other
-/// multipoles have none and stay as they are.
+/// Subtracts shot noise from the monopoles of auto spectra, in place: P_0 <- P_0 - noise where a bin is not empty. Cross spectra of
+/// different particles have none. Other multipoles stay as they are: their noise (2l + 1) noise <L_l> vanishes where a bin holds many modes in all directions.
 ///
 /// `values`: spectra of `pairs`, normalised; `noise`: of each field. Flat noise is what meshes have that are compensated by
 /// [`Compensation::Aliased`], and interlaced ones by [`Compensation::Window`] well below the Nyquist frequency.

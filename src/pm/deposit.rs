@@ -37,7 +37,7 @@ pub fn deposit_scratch<T: Real>(region: &Region, particles: usize, window: Windo
 
 /// Adds the masses of particles to the cells of a region.
 ///
-/// `mesh`: on `region`, added to. `positions`: any finite numbers, wrapped into the box [0, L) exactly. `weights`: one a particle, or
+/// `mesh`: on `region`, added to. `positions`: any finite numbers, wrapped into the box [0, L). `weights`: one a particle, or
 /// none for 1 each.
 ///
 /// A particle that touches cells that the region does not hold is refused, unless it is within rounding (8 ulps of n cells) of one that

@@ -20,7 +20,7 @@ const BLOCK: usize = 64;
 /// `modes`: of a deposit with shift 0. `shifted`: of one with shift 1/2. Both with f(x) = sum_k f_k exp(+i k.x), or both times the same factor.
 ///
 /// A mode with a number n/2 stands for +n/2 and -n/2, which are odd images of each other. It becomes the mean of the two interlaced
-/// modes, which is `modes`/2, so that the field remains real.
+/// modes, which is `modes`/2, so that the field remains real; its power is about half of one mode's: end bins at |n|^2 = (n/2)^2.
 ///
 /// # Errors
 /// `Brick` for a brick of configuration space, `Length`, `Hook`.

@@ -6,7 +6,7 @@
 //! one after another, so that little memory is needed.
 //!
 //! The sum is an integer once divided by m^3. With M modes a shell, |I_s| <= M and <I_s^2> = M over the mesh (Parseval), so rounding errors
-//! of at most c 2^-53 for each factor, c = 3 radius + 150 counting every operation, move N_ijk by at most 3 c 2^-53 M_k sqrt(M_i M_j): 0.06
+//! of at most c 2^-53 M for each factor, c = 3 radius + 150 counting every operation, move N_ijk by at most 3 c 2^-53 M_k sqrt(M_i M_j): 0.06
 //! for the largest triangle of 40 shells of 3 k_f (M = 5.5e5). On larger geometries the bound exceeds 1/2, the errors, being
 //! random, do not: no sum may then lie farther than 0.1 from an integer.
 

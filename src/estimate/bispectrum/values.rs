@@ -82,9 +82,10 @@ fn combine(
     Ok(())
 }
 
-/// The shot noise of B: (P_i + P_j + P_k) noise + noise^2.
+/// The shot noise of B of points of equal weight: (P_i + P_j + P_k) noise + noise^2.
 ///
-/// `power`: P of each shell, free of shot noise. `noise`: 1/n for points of number density n, V sum w^2/(sum w)^2 for weighted ones.
+/// `power`: P of each shell, free of shot noise. `noise`: 1/n for points of number density n. With weights the first term has V sum w^2/(sum w)^2
+/// for noise, and the second is V^2 sum w^3/(sum w)^3, which is larger than noise^2: subtract that difference too.
 ///
 /// # Errors
 /// `Range` for a triangle of a shell without P and if a result overflows, `Length` unless there is a result for each triangle,

@@ -1,49 +1,24 @@
 //! Poisson particles: their noise is flat where the compensation is right.
 
-use core::f64::consts::PI;
 use std::vec::Vec;
 
 use super::*;
 use crate::estimate::power::{shot_noise, subtract_shot_noise};
-use crate::pm::Window;
+use crate::pm::{Assignment, Positions, Region, Window, deposit, deposit_scratch, interlace};
 use crate::status::Error;
 
-/// The B-spline of the window at a distance of x cells.
-fn spline(window: Window, x: f64) -> f64 {
-    let x = x.abs();
-    match window {
-        Window::NearestGridPoint => f64::from(x < 0.5),
-        Window::CloudInCell => (1.0 - x).max(0.0),
-        Window::TriangularShapedCloud if x < 0.5 => 0.75 - x * x,
-        Window::TriangularShapedCloud => (1.5 - x).max(0.0).powi(2) / 2.0,
-        Window::PiecewiseCubicSpline if x < 1.0 => (4.0 - 6.0 * x * x + 3.0 * x * x * x) / 6.0,
-        Window::PiecewiseCubicSpline => (2.0 - x).max(0.0).powi(3) / 6.0,
-    }
-}
-
-/// The overdensity of particles at positions in cells, moved by `shift` cells first; un-normalised modes.
-fn deposit(n: usize, particles: &[[f64; 3]], shift: f64, window: Window) -> Vec<f64> {
+/// Un-normalised modes of particles with positions in cells, their mean density being 1.
+fn deposited(n: usize, particles: &[[f64; 3]], shift: f64, window: Window) -> Vec<f64> {
     let mut fft = serial::<f64>(n);
-    let stride = fft.configuration().stride();
+    let region = Region::from_brick(fft.configuration()).unwrap();
     let mut mesh = vec![0.0; fft.length()];
-    let mean = particles.len() as f64 / (n * n * n) as f64;
-    for position in particles {
-        let axes = position.map(|u| {
-            let u = u + shift;
-            core::array::from_fn::<_, 5, _>(|c| {
-                let cell = libm::floor(u) as i64 + c as i64 - 2;
-                (cell.rem_euclid(n as i64) as usize, spline(window, u - cell as f64))
-            })
-        });
-        for (x, wx) in axes[0] {
-            for (y, wy) in axes[1] {
-                for (z, wz) in axes[2] {
-                    mesh[x * stride[0] + y * stride[1] + z] += wx * wy * wz / mean;
-                }
-            }
-        }
-    }
+    let positions = Positions::triples(particles.as_flattened()).unwrap();
+    let assignment = Assignment { box_size: n as f64, window, shift };
+    let scratch = memory(deposit_scratch::<f64>(&region, particles.len(), window).unwrap());
+    deposit(&mut mesh, &region, &positions, None, &assignment, scratch, &Serial).unwrap();
     fft.forward(&mut mesh).unwrap();
+    let mean = particles.len() as f64 / (n * n * n) as f64;
+    mesh.iter_mut().for_each(|part| *part /= mean);
     mesh
 }
 
@@ -64,7 +39,7 @@ fn poisson_noise_is_flat_to_the_nyquist_frequency_with_c1() {
     let (n, count) = (48, 60_000);
     let particles = poisson(n, count, 5);
     for window in Window::ALL {
-        let modes = deposit(n, &particles, 0.0, window);
+        let modes = deposited(n, &particles, 0.0, window);
         for edges in [[1, 64], [64, 256], [256, 441], [441, 576]] {
             let (ratio, error) = ratio(&modes, n, count, Compensation::Aliased(window), edges);
             assert!((ratio - 1.0).abs() < 3.5 * error, "{window:?} {edges:?}: {ratio} +- {error}");
@@ -87,23 +62,9 @@ fn interlaced_noise_is_flat_with_the_window_itself() {
     let particles = poisson(n, count, 6);
     let brick = *serial::<f64>(n).fourier();
     for window in [Window::TriangularShapedCloud, Window::PiecewiseCubicSpline] {
-        let mut modes = deposit(n, &particles, 0.0, window);
-        let shifted = deposit(n, &particles, 0.5, window);
-        let stride = brick.stride();
-        for i in 0..n {
-            for j in 0..n {
-                for l in 0..=n / 2 {
-                    let sum = Brick::mode(n, i) + Brick::mode(n, j) + l as i64;
-                    // Half a cell back: exp(+i k.d) with d = H/2 on each axis.
-                    let phase = PI * sum as f64 / n as f64;
-                    let (cos, sin) = (libm::cos(phase), libm::sin(phase));
-                    let at = 2 * (i * stride[0] + j * stride[1] + l);
-                    let [re, im] = [shifted[at], shifted[at + 1]];
-                    modes[at] = (modes[at] + re * cos - im * sin) / 2.0;
-                    modes[at + 1] = (modes[at + 1] + re * sin + im * cos) / 2.0;
-                }
-            }
-        }
+        let mut modes = deposited(n, &particles, 0.0, window);
+        let shifted = deposited(n, &particles, 0.5, window);
+        interlace(&mut modes, &shifted, &brick, &Serial).unwrap();
         // To 0.75 of the Nyquist frequency the even images that are left add less than 1% of the noise of these windows.
         for edges in [[1, 64], [64, 196], [196, 324]] {
             let (ratio, error) = ratio(&modes, n, count, Compensation::Window(window), edges);
