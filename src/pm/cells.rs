@@ -58,7 +58,7 @@ impl Cells {
     }
 
     /// Offsets of the first of the P x P rows of Q reals that a particle touches, if none of them runs over an edge and rows have unit
-    /// stride; row (i, j) then begins i stride[0] + j stride[1] further.
+    /// stride; row (i, j) then begins `i stride[0] + j stride[1]` further.
     #[inline(always)]
     pub(super) fn rows<const P: usize, const Q: usize>(&self, [x, y, z]: [usize; 3]) -> Option<usize> {
         let inside = (x + P <= self.count[0]) & (y + P <= self.count[1]) & (z + Q <= self.count[2]);

@@ -6,7 +6,7 @@ pub(super) const ROWS: usize = 4;
 /// Columns that are made at a time: two registers of f64.
 pub(super) const COLUMNS: usize = 8;
 
-/// out[r][c] = sum over k < depth of left[k][r] right[k][c] for [`ROWS`] rows from `row` on and `columns` columns, rounded up to whole
+/// `out[r][c] = sum over k < depth of left[k][r] right[k][c]` for [`ROWS`] rows from `row` on and `columns` columns, rounded up to whole
 /// [`COLUMNS`]. The terms are added in the order of k.
 ///
 /// `out`: rows of `out_row` values, the first of them row `row`. `left`, `right`: rows of `left_row` and `right_row` values.

@@ -171,7 +171,7 @@ fn wedges_hold_all_modes_of_their_shell_and_no_nan() {
         assert_eq!(bins.iter().map(|bin| bin.count).sum::<u64>(), 16 * 16 * 16);
         for (b, bin) in bins.iter().enumerate() {
             let wedge = b * 10..(b + 1) * 10;
-            assert_eq!(bin.count, parts[wedge.clone()].iter().map(|part| part.count).sum());
+            assert_eq!(bin.count, parts[wedge.clone()].iter().map(|part| part.count).sum::<u64>());
             let sum: f64 = shares[wedge].iter().sum();
             assert!((sum - power[b]).abs() <= 1e-13 * power[b]);
         }
