@@ -1787,11 +1787,11 @@ fixpair_status_t fixpair_power_sums_scratch(struct fixpair_layout *scratch,
  * are real and odd ones imaginary: for odd l the sums hold Im f g* L_l, and P_l is i times the result; the dipole is positive where g is f moved
  * by a small step along the line of sight a. Nothing is normalised or subtracted here:
  *
- *     int64_t *sums = calloc(words, sizeof *sums);         see fixpair_binning_lengths
- *     fixpair_power_sums_f64(sums, words, ...);            on each rank, then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
- *     fixpair_binning_read(bins, bins_len, P, P_len, sums, words, &binning, pairs_len);
- *     fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);    L*L*L/(W*W) for a deposit whose weights sum to W
- *     fixpair_subtract_shot_noise(P, P_len, pairs, pairs_len, bins, bins_len, binning.orders, &noise, 1);    if wanted
+ *    int64_t *sums = calloc(words, sizeof *sums);         see fixpair_binning_lengths
+ *    fixpair_power_sums_f64(sums, words, ...);            on each rank, then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
+ *    fixpair_binning_read(bins, bins_len, P, P_len, sums, words, &binning, pairs_len);
+ *    fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);    L*L*L/(W*W) for a deposit whose weights sum to W
+ *    fixpair_subtract_shot_noise(P, P_len, pairs, pairs_len, bins, bins_len, binning.orders, &noise, 1);    if wanted
  *
  * The bits do not depend on threads or on how the mesh is cut along x or y; bricks that cut axis 2 agree to rounding.
  *
@@ -2264,12 +2264,12 @@ fixpair_status_t fixpair_bispectrum_scratch_f32(struct fixpair_layout *scratch,
  * From modes to the sums of all triangles of a list: what fixpair_bispectrum_sums_f64 adds, with the shells' transforms, in as much memory as
  * there is. The whole way, for a deposit of weights whose sum is W:
  *
- *     fixpair_squeezed_triangles(triangles, T, 0, edges_len - 1);    T = edges_len - 1; or fixpair_closed_triangles
- *     fixpair_triangle_counts(counts, triangles, T, edges, edges_len, n, ...);    once: save counts with triangles, edges and n
- *     fixpair_compensate_f64(modes, len, FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC, 1.0/W, &fft.fourier, ...);
- *     fixpair_bispectrum_f64(sums, words, NULL, triangles, T, edges, edges_len, modes, ...);    then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
- *     fixpair_bispectrum_values(B, T, sums, words);
- *     fixpair_bispectrum_normalise(B, counts, T, n, L, 1.0);
+ *    fixpair_squeezed_triangles(triangles, T, 0, edges_len - 1);    T = edges_len - 1; or fixpair_closed_triangles
+ *    fixpair_triangle_counts(counts, triangles, T, edges, edges_len, n, ...);    once: save counts with triangles, edges and n
+ *    fixpair_compensate_f64(modes, len, FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC, 1.0/W, &fft.fourier, ...);
+ *    fixpair_bispectrum_f64(sums, words, NULL, triangles, T, edges, edges_len, modes, ...);    then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
+ *    fixpair_bispectrum_values(B, T, sums, words);
+ *    fixpair_bispectrum_normalise(B, counts, T, n, L, 1.0);
  *
  * P of the same shells, which fixpair_bispectrum_shot_noise and fixpair_bispectrum_reduced take, comes from fixpair_power_sums_f64: edges as here,
  * and FIXPAIR_COMPENSATION_NONE for modes that are compensated already. Every transform is a call of fft: in a long call a hook that counts its

@@ -386,12 +386,12 @@ unsafe fn whole_scratch<H: Hook>(
 /// From modes to the sums of all triangles of a list: what fixpair_bispectrum_sums_f64 adds, with the shells' transforms, in as much memory as
 /// there is. The whole way, for a deposit of weights whose sum is W:
 ///
-///     fixpair_squeezed_triangles(triangles, T, 0, edges_len - 1);    T = edges_len - 1; or fixpair_closed_triangles
-///     fixpair_triangle_counts(counts, triangles, T, edges, edges_len, n, ...);    once: save counts with triangles, edges and n
-///     fixpair_compensate_f64(modes, len, FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC, 1.0/W, &fft.fourier, ...);
-///     fixpair_bispectrum_f64(sums, words, NULL, triangles, T, edges, edges_len, modes, ...);    then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
-///     fixpair_bispectrum_values(B, T, sums, words);
-///     fixpair_bispectrum_normalise(B, counts, T, n, L, 1.0);
+///    fixpair_squeezed_triangles(triangles, T, 0, edges_len - 1);    T = edges_len - 1; or fixpair_closed_triangles
+///    fixpair_triangle_counts(counts, triangles, T, edges, edges_len, n, ...);    once: save counts with triangles, edges and n
+///    fixpair_compensate_f64(modes, len, FIXPAIR_COMPENSATION_WINDOW + FIXPAIR_WINDOW_TSC, 1.0/W, &fft.fourier, ...);
+///    fixpair_bispectrum_f64(sums, words, NULL, triangles, T, edges, edges_len, modes, ...);    then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
+///    fixpair_bispectrum_values(B, T, sums, words);
+///    fixpair_bispectrum_normalise(B, counts, T, n, L, 1.0);
 ///
 /// P of the same shells, which fixpair_bispectrum_shot_noise and fixpair_bispectrum_reduced take, comes from fixpair_power_sums_f64: edges as here,
 /// and FIXPAIR_COMPENSATION_NONE for modes that are compensated already. Every transform is a call of fft: in a long call a hook that counts its

@@ -97,11 +97,11 @@ pub unsafe extern "C" fn fixpair_power_sums_scratch(
 /// are real and odd ones imaginary: for odd l the sums hold Im f g* L_l, and P_l is i times the result; the dipole is positive where g is f moved
 /// by a small step along the line of sight a. Nothing is normalised or subtracted here:
 ///
-///     int64_t *sums = calloc(words, sizeof *sums);         see fixpair_binning_lengths
-///     fixpair_power_sums_f64(sums, words, ...);            on each rank, then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
-///     fixpair_binning_read(bins, bins_len, P, P_len, sums, words, &binning, pairs_len);
-///     fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);    L*L*L/(W*W) for a deposit whose weights sum to W
-///     fixpair_subtract_shot_noise(P, P_len, pairs, pairs_len, bins, bins_len, binning.orders, &noise, 1);    if wanted
+///    int64_t *sums = calloc(words, sizeof *sums);         see fixpair_binning_lengths
+///    fixpair_power_sums_f64(sums, words, ...);            on each rank, then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
+///    fixpair_binning_read(bins, bins_len, P, P_len, sums, words, &binning, pairs_len);
+///    fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);    L*L*L/(W*W) for a deposit whose weights sum to W
+///    fixpair_subtract_shot_noise(P, P_len, pairs, pairs_len, bins, bins_len, binning.orders, &noise, 1);    if wanted
 ///
 /// The bits do not depend on threads or on how the mesh is cut along x or y; bricks that cut axis 2 agree to rounding.
 ///

@@ -1,5 +1,4 @@
 //! The correlation function of meshes, by the inverse transform of the power of each mode.
-//!
 //!     xi(x) = <f(y + x) g(y)> = sum_k f_k g_k* exp(+i k.x)
 //! for modes with f(x) = sum_k f_k exp(+i k.x): multiply modes ([`correlation_modes`]), transform back (a hook's un-normalised inverse is this sum), and
 //! sum over separations ([`correlation_sums`]). Separations are x = (L/N) m with m_a in (-N/2, N/2]; bins hold ranges of |m|^2, mu = |m.a|/|m|, or
