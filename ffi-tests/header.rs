@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 19] = [
+const SECTIONS: [(&str, &str); 20] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -21,6 +21,7 @@ const SECTIONS: [(&str, &str); 19] = [
     ("power", "Power spectrum"),
     ("correlation", "Correlation function"),
     ("triangles", "Triangles"),
+    ("bispectrum_sums", "Bispectrum with the host's own transform"),
     ("bispectrum", "Bispectrum"),
     ("bispectrum_values", "From sums to bispectra"),
 ];

@@ -1389,8 +1389,8 @@ fixpair_status_t fixpair_particle_ids(uint64_t *ids,
  */
 
 /*
- * Scratch of fixpair_deposit_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded
- * up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
+ * Scratch of fixpair_deposit_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1)
+ * bytes, each rounded up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
  *
  * Out: scratch
  * In:  region     of configuration space; may run over the edge
@@ -1460,8 +1460,8 @@ fixpair_status_t fixpair_deposit_f32(float *mesh,
                                      const struct fixpair_exec *exec);
 
 /*
- * Scratch of fixpair_read_out_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded
- * up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
+ * Scratch of fixpair_read_out_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1)
+ * bytes, each rounded up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
  *
  * Out: scratch
  * In:  region     of configuration space; may run over the edge
@@ -2126,8 +2126,8 @@ fixpair_status_t fixpair_triangle_counts(uint64_t *counts,
                                          const struct fixpair_exec *exec);
 
 /*
- * Bispectrum
- * ==========
+ * Bispectrum with the host's own transform
+ * ========================================
  */
 
 /*
@@ -2222,6 +2222,11 @@ fixpair_status_t fixpair_bispectrum_sums_f32(int64_t *sums,
                                              void *scratch,
                                              size_t scratch_len,
                                              const struct fixpair_exec *exec);
+
+/*
+ * Bispectrum
+ * ==========
+ */
 
 /*
  * Reals in `count` meshes for fixpair_bispectrum_f64: each is fft->length, rounded up to 64 bytes.

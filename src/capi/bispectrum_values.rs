@@ -1,6 +1,6 @@
 //! From sums over triangles to bispectra.
 
-use super::bispectrum::check_words;
+use super::bispectrum_sums::check_words;
 use super::border::Border;
 use super::status::{code, fixpair_status_t};
 use crate::estimate::bispectrum::{self, Triangle};

@@ -9,6 +9,7 @@
 
 pub mod binning;
 pub mod bispectrum;
+pub mod bispectrum_sums;
 pub mod bispectrum_values;
 pub mod built_in;
 pub mod cells;

@@ -104,8 +104,8 @@ pub(super) fn region(brick: &fixpair_brick) -> Result<Region> {
     Region::new(brick.n, brick.start, brick.count, brick.stride)
 }
 
-/// Scratch of fixpair_deposit_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded
-/// up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
+/// Scratch of fixpair_deposit_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1)
+/// bytes, each rounded up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
 ///
 /// Out: scratch
 /// In:  region     of configuration space; may run over the edge
@@ -286,8 +286,8 @@ unsafe fn add_particles<P: Places>(
     }
 }
 
-/// Scratch of fixpair_read_out_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1) bytes, each rounded
-/// up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
+/// Scratch of fixpair_read_out_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1)
+/// bytes, each rounded up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
 ///
 /// Out: scratch
 /// In:  region     of configuration space; may run over the edge
