@@ -17,6 +17,7 @@ pub mod correlation;
 pub mod cosmology;
 pub mod exec;
 pub mod fft;
+pub mod force;
 pub mod initial;
 pub mod mesh;
 pub mod mode_table;

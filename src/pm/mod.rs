@@ -1,10 +1,11 @@
-//! Particles and meshes: deposit, read-out, and what slabs and interlacing need beside them.
+//! Particles and meshes: deposit, forces, read-out, and what slabs and interlacing need beside them.
 //!
 //! Mesh point i of a box of side L lies at (i + shift) H, H = L/n. Positions are in the unit of L, masses in any. The cells that particles of
 //! a slab touch reach beyond it: a [`Region`] holds them, and `ghosts.rs` says how processes exchange them.
 
 pub mod columns;
 pub mod deposit;
+pub mod force;
 pub mod ghosts;
 pub mod interlace;
 pub mod read_out;
@@ -19,6 +20,7 @@ mod tiles;
 
 pub use columns::{Column, ColumnMut, Positions};
 pub use deposit::{deposit, deposit_scratch};
+pub use force::{Difference, ForceLaw, force, force_scratch, forces, potential};
 pub use frame::Assignment;
 pub use ghosts::{add_cells, copy_cells};
 pub use interlace::interlace;

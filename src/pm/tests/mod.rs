@@ -1,7 +1,9 @@
 //! What the tests of deposits share, and deposits against their definition.
 
 mod bits;
+mod force;
 mod interlacing;
+mod pair_force;
 mod regions;
 
 use std::vec;
