@@ -78,7 +78,7 @@ pub unsafe extern "C" fn fixpair_gravity_init(gravity: *mut fixpair_gravity) -> 
             cosmology: fixpair_cosmology::new(Cosmology::goliat()),
             box_size: 1000.0,
             hubble: 100.0,
-            law: fixpair_force_law::default(),
+            law: fixpair_force_law::initial(),
             cola_exponent: FIXPAIR_COLA_EXPONENT,
             stepper: FIXPAIR_STEPPER_FASTPM,
             window: FIXPAIR_WINDOW_CIC,
@@ -247,12 +247,7 @@ pub unsafe extern "C" fn fixpair_evolve_scratch_f32(
     code(unsafe { query(scratch, fft, particles, window) })
 }
 
-unsafe fn query<H: Hook>(
-    scratch: *mut Layout,
-    fft: *const H,
-    particles: usize,
-    window: i32,
-) -> Result<()> {
+unsafe fn query<H: Hook>(scratch: *mut Layout, fft: *const H, particles: usize, window: i32) -> Result<()> {
     let mut border = Border::new();
     // SAFETY: the caller's promise.
     let (scratch, fft) = unsafe { (border.write_one(scratch)?, HostFft::new(&mut border, fft)?) };
@@ -399,11 +394,8 @@ unsafe fn run<S: Structs>(
         let scale_factors = border.read(scale_factors, scale_factors_len)?;
         let mut outputs = shown::<S>(&mut border, outputs)?;
         let [mesh1, mesh2, mesh3] = meshes;
-        let meshes = [
-            border.write(mesh1, mesh_len)?,
-            border.write(mesh2, mesh_len)?,
-            border.write(mesh3, mesh_len)?,
-        ];
+        let meshes =
+            [border.write(mesh1, mesh_len)?, border.write(mesh2, mesh_len)?, border.write(mesh3, mesh_len)?];
         let mut fft = HostFft::new(&mut border, fft)?;
         let scratch = border.scratch(scratch, scratch_len)?;
         let mut tell = told(&mut border, observer)?;
@@ -460,7 +452,7 @@ unsafe fn shown<'a, S: Structs>(
 unsafe fn told<T: Real>(
     border: &mut Border,
     pointer: *const fixpair_observer,
-) -> Result<impl FnMut(&Progress<'_, T>) -> Verdict> {
+) -> Result<impl FnMut(&Progress<'_, T>) -> Verdict + use<T>> {
     let mut observer = None;
     if !pointer.is_null() {
         // SAFETY: the caller's promise.

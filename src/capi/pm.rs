@@ -83,7 +83,10 @@ pub(super) trait Places: Copy {
 
 /// # Safety
 /// `pointer` is null or points to positions whose elements nobody writes.
-pub(super) unsafe fn positions<'a, P: Places>(border: &mut Border, pointer: *const P) -> Result<Positions<'a, P::Real>> {
+pub(super) unsafe fn positions<'a, P: Places>(
+    border: &mut Border,
+    pointer: *const P,
+) -> Result<Positions<'a, P::Real>> {
     // SAFETY: the caller's promise.
     unsafe {
         let of = border.read_one(pointer)?;
@@ -93,7 +96,10 @@ pub(super) unsafe fn positions<'a, P: Places>(border: &mut Border, pointer: *con
 
 /// # Safety
 /// Nobody writes the elements.
-pub(super) unsafe fn positions_of<'a, P: Places>(border: &mut Border, of: &P) -> Result<Positions<'a, P::Real>> {
+pub(super) unsafe fn positions_of<'a, P: Places>(
+    border: &mut Border,
+    of: &P,
+) -> Result<Positions<'a, P::Real>> {
     let (start, stride, length) = of.parts();
     if stride == 0 {
         return Err(Error::Range);

@@ -122,9 +122,8 @@ impl Stepper {
                 let expansion = libm::sqrt(cosmology.e_squared(at));
                 let factor = 1.5 * cosmology.omega_m * time / (at * at * expansion);
                 let first = end.velocity - start.velocity - factor * known.d;
-                let second = end.second_velocity
-                    - start.second_velocity
-                    - factor * (known.d2 - known.d * known.d);
+                let second =
+                    end.second_velocity - start.second_velocity - factor * (known.d2 - known.d * known.d);
                 Ok(StepFactors { factor, first, second })
             }
         }

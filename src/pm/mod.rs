@@ -1,4 +1,4 @@
-//! Particles and meshes: deposit, read-out, kick and drift, and what slabs and interlacing need beside them.
+//! Particles and meshes: deposit, forces, read-out, kicks and drifts, whole runs, and what slabs and interlacing need beside them.
 //!
 //! Mesh point i of a box of side L lies at (i + shift) H, H = L/n. Positions are in the unit of L, masses in any. The cells that particles of
 //! a slab touch reach beyond it: a [`Region`] holds them, and `ghosts.rs` says how processes exchange them.
@@ -8,6 +8,7 @@ pub mod deposit;
 pub mod drift;
 pub mod evolve;
 pub mod factors;
+pub mod force;
 pub mod ghosts;
 pub mod interlace;
 pub mod kick;
@@ -28,6 +29,7 @@ pub use columns::{Column, ColumnMut, Positions, copy_components};
 pub use deposit::{deposit, deposit_scratch};
 pub use drift::{Drift, drift};
 pub use evolve::{evolve, evolve_scratch};
+pub use force::{Difference, ForceLaw, force, force_scratch, forces, potential};
 pub use frame::Assignment;
 pub use ghosts::{add_cells, copy_cells};
 pub use interlace::interlace;

@@ -1,8 +1,8 @@
 //! What a run shows on its way: progress, and particles at times between its steps.
 
+use super::columns::{Positions, copy_components};
 use super::evolve::{Epoch, Workshop};
 use super::mover::Mover;
-use super::columns::{Positions, copy_components};
 use crate::initial::particles::Components;
 use crate::real::Real;
 use crate::status::{Error, Result};
@@ -86,7 +86,8 @@ impl<'a, 'b, T: Real> Queue<'a, 'b, T> {
                 return Err(Error::Range);
             }
             // Between steps, one at the velocities' epoch belongs to the step before: it followed that kick.
-            let done = |&a: &f64| a < epoch.velocity || a == epoch.velocity && epoch.velocity < epoch.position;
+            let done =
+                |&a: &f64| a < epoch.velocity || a == epoch.velocity && epoch.velocity < epoch.position;
             next = times.iter().take_while(|a| done(a)).count();
         }
         Ok(Self { outputs, next, written: 0, observe, steps: [0; 2], verdict: Verdict::Continue })

@@ -32,7 +32,14 @@ fn sharp(window: Window) -> ForceLaw {
 
 fn gravity(stepper: Stepper) -> Gravity {
     let window = Window::CloudInCell;
-    Gravity { cosmology: Cosmology::goliat(), box_size: BOX, hubble: 100.0, window, law: ForceLaw::default(), stepper }
+    Gravity {
+        cosmology: Cosmology::goliat(),
+        box_size: BOX,
+        hubble: 100.0,
+        window,
+        law: ForceLaw::default(),
+        stepper,
+    }
 }
 
 /// Particles of one time.
@@ -179,7 +186,11 @@ fn a_plane_wave_follows_zeldovich_to_shell_crossing() {
             let error = (particles.x[3 * i + 2] - x + 0.5 * BOX).rem_euclid(BOX) - 0.5 * BOX;
             // The force is soft within a cell or two of the caustic, and steps are finite.
             assert!(error.abs() < 0.01 * amplitude, "{stepper:?} {i}: {error}");
-            assert!((particles.u[3 * i + 2] - u).abs() < 0.04 * fastest, "{stepper:?} {i}: {}", particles.u[3 * i + 2] - u);
+            assert!(
+                (particles.u[3 * i + 2] - u).abs() < 0.04 * fastest,
+                "{stepper:?} {i}: {}",
+                particles.u[3 * i + 2] - u
+            );
         }
     }
 }
@@ -189,7 +200,14 @@ fn momentum_is_conserved_to_rounding() {
     for (law, window) in [
         (ForceLaw::default(), Window::CloudInCell),
         (sharp(Window::TriangularShapedCloud), Window::TriangularShapedCloud),
-        (ForceLaw { laplacian: Difference::TwoPoint, gradient: Difference::TwoPoint, ..ForceLaw::default() }, Window::CloudInCell),
+        (
+            ForceLaw {
+                laplacian: Difference::TwoPoint,
+                gradient: Difference::TwoPoint,
+                ..ForceLaw::default()
+            },
+            Window::CloudInCell,
+        ),
         (ForceLaw { gradient: Difference::FourPoint, ..ForceLaw::default() }, Window::PiecewiseCubicSpline),
     ] {
         let gravity = Gravity { law, window, ..gravity(Stepper::FastPm) };
@@ -251,7 +269,8 @@ fn cola_needs_few_steps_for_large_scales_and_agrees_with_fastpm_in_the_limit() {
     let n = 16;
     let first = start::<f64>(n, 1.0, Order::Second);
     let [one, two] = displacements(&first, n);
-    let lpt = Lpt { first: Positions::triples(&one).unwrap(), second: Some(Positions::triples(&two).unwrap()) };
+    let lpt =
+        Lpt { first: Positions::triples(&one).unwrap(), second: Some(Positions::triples(&two).unwrap()) };
     let displacements = Displacements { lpt, scale_factor: START };
     let window = Window::PiecewiseCubicSpline;
     let gravity = |stepper| Gravity { window, law: sharp(window), ..gravity(stepper) };
@@ -282,9 +301,11 @@ fn runs_stopped_at_any_step_go_on_with_the_same_bits() {
         serial(16).through(&gravity(Stepper::FastPm), &mut whole, &list);
         for stop in 1..=5 {
             let mut parts = first.clone();
-            let mut observe =
-                |progress: &Progress<'_, T>| if progress.step == stop { Verdict::Stop } else { Verdict::Continue };
-            let stopped = serial(16).run(&gravity(Stepper::FastPm), &mut parts, None, &list, None, &mut observe);
+            let mut observe = |progress: &Progress<'_, T>| {
+                if progress.step == stop { Verdict::Stop } else { Verdict::Continue }
+            };
+            let stopped =
+                serial(16).run(&gravity(Stepper::FastPm), &mut parts, None, &list, None, &mut observe);
             assert_eq!(stopped, Err(Error::Stopped));
             assert_eq!(parts.epoch.position, list[stop]);
             assert_eq!(parts.epoch.velocity, half_step(list[stop - 1], list[stop]));
@@ -316,7 +337,12 @@ fn threads_change_no_bit() {
 }
 
 /// Runs with outputs; returns them.
-fn shown(first: &Particles<f64>, list: &[f64], times: &[f64], stop: usize) -> (Particles<f64>, Vec<Particles<f64>>) {
+fn shown(
+    first: &Particles<f64>,
+    list: &[f64],
+    times: &[f64],
+    stop: usize,
+) -> (Particles<f64>, Vec<Particles<f64>>) {
     let mut particles = first.clone();
     let mut seen = Vec::new();
     loop {
@@ -338,7 +364,11 @@ fn shown(first: &Particles<f64>, list: &[f64], times: &[f64], stop: usize) -> (P
                 });
                 seen.push(Particles { x, u, epoch: progress.epoch });
             }
-            if progress.step == stop && progress.event == Event::Step { Verdict::Stop } else { Verdict::Continue }
+            if progress.step == stop && progress.event == Event::Step {
+                Verdict::Stop
+            } else {
+                Verdict::Continue
+            }
         };
         let gravity = gravity(Stepper::FastPm);
         match serial(16).run(&gravity, &mut particles, None, list, Some(&mut outputs), &mut observe) {

@@ -7,8 +7,7 @@ use crate::cosmology::{Cosmology, Growth, growth};
 use crate::pm::factors::*;
 use crate::status::Error;
 
-const ALL: [Stepper; 3] =
-    [Stepper::FastPm, Stepper::Leapfrog, Stepper::Cola { exponent: COLA_EXPONENT }];
+const ALL: [Stepper; 3] = [Stepper::FastPm, Stepper::Leapfrog, Stepper::Cola { exponent: COLA_EXPONENT }];
 
 /// Displacement and canonical velocity of a growing mode: D, D2, G, G2.
 fn mode(cosmology: &Cosmology, a: f64) -> [f64; 4] {
@@ -22,7 +21,15 @@ fn close(got: f64, wanted: f64, tolerance: f64) {
 }
 
 /// Kick, drift, kick, from a to b, of x = psi and v under F(a) and F(b); COLA's displacements are (1, second).
-fn step(stepper: Stepper, cosmology: &Cosmology, [a, b]: [f64; 2], second: f64, force: [f64; 2], x: f64, v: f64) -> [f64; 2] {
+fn step(
+    stepper: Stepper,
+    cosmology: &Cosmology,
+    [a, b]: [f64; 2],
+    second: f64,
+    force: [f64; 2],
+    x: f64,
+    v: f64,
+) -> [f64; 2] {
     let middle = half_step(a, b);
     let apply = |f: StepFactors, to: f64| f.factor * to + f.first + f.second * second;
     let v = v + apply(stepper.kick(cosmology, a, middle, a).unwrap(), force[0]);
