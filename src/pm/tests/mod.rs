@@ -1,7 +1,9 @@
 //! What the tests of deposits share, and deposits against their definition.
 
 mod bits;
+mod drifts;
 mod interlacing;
+mod kicks;
 mod regions;
 
 use std::vec;
@@ -13,6 +15,7 @@ use super::read_out::read_out_with;
 use super::window::weights;
 use super::*;
 use crate::exec::{Exec, Serial, Threads};
+use crate::initial::particles::Components;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::reference::deposit::{spline, windows};
