@@ -48,7 +48,8 @@ pub(crate) fn fields(n: usize, box_size: f64, masses: &[f64], law: &ForceLaw) ->
                 let k = number.map(|m| 2.0 * PI * m as f64 / box_size);
                 let along = k.map(|k| derivatives(law, k, h));
                 let [re, im] = modes[at].map(|part| {
-                    -part / mass * shape(law, k, h) / along.iter().map(|&(_, laplacian)| laplacian).sum::<f64>()
+                    -part / mass * shape(law, k, h)
+                        / along.iter().map(|&(_, laplacian)| laplacian).sum::<f64>()
                 });
                 match field {
                     // - i K (re + i im)
