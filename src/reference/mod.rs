@@ -7,6 +7,7 @@ pub(crate) mod deposit;
 pub(crate) mod dft;
 pub(crate) mod force;
 pub(crate) mod kick;
+pub(crate) mod fof;
 pub(crate) mod power;
 pub(crate) mod transform;
 pub(crate) mod white;
