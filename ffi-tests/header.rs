@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 20] = [
+const SECTIONS: [(&str, &str); 23] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -17,6 +17,9 @@ const SECTIONS: [(&str, &str); 20] = [
     ("particles", "Particles"),
     ("pm", "Deposit and read-out"),
     ("cells", "Ghost planes and interlacing"),
+    ("fof", "Friends of friends"),
+    ("halos", "Halo catalogue"),
+    ("spheres", "Spherical overdensities"),
     ("binning", "Bins of spectra and correlation functions"),
     ("power", "Power spectrum"),
     ("correlation", "Correlation function"),
@@ -27,7 +30,14 @@ const SECTIONS: [(&str, &str); 20] = [
 ];
 
 /// Files outside `src/capi` that define structs of the interface.
-const STRUCTS: [&str; 3] = ["src/scratch.rs", "src/cosmology/growth.rs", "src/estimate/binning.rs"];
+const STRUCTS: [&str; 6] = [
+    "src/scratch.rs",
+    "src/cosmology/growth.rs",
+    "src/halos/sums.rs",
+    "src/halos/catalogue.rs",
+    "src/halos/spheres.rs",
+    "src/estimate/binning.rs",
+];
 
 const PREAMBLE: &str = include_str!("header_preamble.h");
 
@@ -50,7 +60,14 @@ fn generate() -> String {
         ..cbindgen::Config::default()
     };
     config.function.sort_by = Some(cbindgen::SortKey::None);
-    for (rust, c) in [("Layout", "fixpair_layout"), ("Growth", "fixpair_growth"), ("Bin", "fixpair_bin")] {
+    for (rust, c) in [
+        ("Layout", "fixpair_layout"),
+        ("Growth", "fixpair_growth"),
+        ("HaloSums", "fixpair_halo_sums"),
+        ("Halo", "fixpair_halo"),
+        ("Sphere", "fixpair_sphere"),
+        ("Bin", "fixpair_bin"),
+    ] {
         config.export.rename.insert(rust.into(), c.into());
     }
     config.defines.insert("feature = std".into(), "FIXPAIR_THREADS".into());
@@ -59,6 +76,7 @@ fn generate() -> String {
         "STEP".into(),
         "ALIGN".into(),
         "HIGHEST_ORDER".into(),
+        "LEAST_OVERDENSITY".into(),
     ]);
     let mut builder = cbindgen::Builder::new().with_config(config);
     for file in STRUCTS {
