@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 23] = [
+const SECTIONS: [(&str, &str); 26] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -20,6 +20,9 @@ const SECTIONS: [(&str, &str); 23] = [
     ("force", "Forces on a mesh"),
     ("factors", "Steps in time"),
     ("evolve", "Runs"),
+    ("fof", "Friends of friends"),
+    ("halos", "Halo catalogue"),
+    ("spheres", "Spherical overdensities"),
     ("binning", "Bins of spectra and correlation functions"),
     ("power", "Power spectrum"),
     ("correlation", "Correlation function"),
@@ -30,12 +33,15 @@ const SECTIONS: [(&str, &str); 23] = [
 ];
 
 /// Files outside `src/capi` that define structs of the interface.
-const STRUCTS: [&str; 5] = [
+const STRUCTS: [&str; 8] = [
     "src/scratch.rs",
     "src/cosmology/growth.rs",
-    "src/estimate/binning.rs",
     "src/pm/factors.rs",
     "src/pm/evolve.rs",
+    "src/halos/sums.rs",
+    "src/halos/catalogue.rs",
+    "src/halos/spheres.rs",
+    "src/estimate/binning.rs",
 ];
 
 const PREAMBLE: &str = include_str!("header_preamble.h");
@@ -62,9 +68,12 @@ fn generate() -> String {
     for (rust, c) in [
         ("Layout", "fixpair_layout"),
         ("Growth", "fixpair_growth"),
-        ("Bin", "fixpair_bin"),
         ("StepFactors", "fixpair_step_factors"),
         ("Epoch", "fixpair_epoch"),
+        ("HaloSums", "fixpair_halo_sums"),
+        ("Halo", "fixpair_halo"),
+        ("Sphere", "fixpair_sphere"),
+        ("Bin", "fixpair_bin"),
     ] {
         config.export.rename.insert(rust.into(), c.into());
     }
@@ -74,6 +83,7 @@ fn generate() -> String {
         "STEP".into(),
         "ALIGN".into(),
         "HIGHEST_ORDER".into(),
+        "LEAST_OVERDENSITY".into(),
     ]);
     let mut builder = cbindgen::Builder::new().with_config(config);
     for file in STRUCTS {

@@ -36,7 +36,7 @@ mod sort;
 pub use catalogue::{Halo, halos, halos_finish, halos_scratch};
 pub use fof::{fof_labels, fof_labels_scratch, linking_length};
 pub use overdensity::{Overdensity, particle_mass};
-pub use refine::{Shrink, refine_centres, refine_centres_scratch};
+pub use refine::{Shrink, refine_centres};
 pub use slabs::{fof_merge, fof_relabel};
 pub use spheres::{Density, Sphere, spheres, spheres_scratch};
 pub use sums::{HaloSums, halo_sums, halo_sums_merge};

@@ -3,12 +3,11 @@
 //! The centre moves to the centre of mass of the particles within r, then r shrinks by a factor, until a sphere would hold fewer than
 //! `n_min` particles.
 
-use super::grid::{self, Grid};
+use super::grid::Grid;
 use super::periodic::{difference, home};
 use crate::exec::{Exec, Shared};
 use crate::pm::columns::Positions;
 use crate::real::Real;
-use crate::scratch::Layout;
 use crate::status::{Error, Result};
 
 /// How spheres shrink.
@@ -23,19 +22,11 @@ pub struct Shrink {
 /// Spheres that are smaller than this part of L are not made.
 const SMALLEST: f64 = 1e-9;
 
-/// Scratch of [`refine_centres`]: with r = size of `T`, (3 r + 12) particles bytes, and at most 4.2 MB.
-///
-/// # Errors
-/// `Overflow` for 2^32 particles and more, or if the bytes do not fit the address space.
-pub fn refine_centres_scratch<T: Real>(particles: usize) -> Result<Layout> {
-    grid::layout::<T>(particles)
-}
-
 /// Moves each centre to the densest place within its radius.
 ///
 /// `centres`: any finite places; on return in [0, L). `radii`: of the first spheres, one a centre, not above L/4: twice the
 /// [`radius`](field@super::Halo::radius) of the group, say. A centre whose first sphere holds fewer than `n_min` particles stays. `position`: all
-/// particles that may lie in the spheres.
+/// particles that may lie in the spheres. `scratch`: see [`spheres_scratch`](super::spheres_scratch).
 ///
 /// # Errors
 /// `Length`; `NotFinite`; `Range` for the box, a radius not in 0 ..= L/4, a factor not in 0.5 ..= 0.999, `n_min` = 0; `Overflow`, `Scratch`,

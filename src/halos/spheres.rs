@@ -52,7 +52,7 @@ pub(super) fn radius(k: u64, overdensity: f64, box_size: f64, particles_total: u
         * libm::cbrt(k as f64 * 3.0 / (4.0 * core::f64::consts::PI * overdensity * particles_total as f64))
 }
 
-/// Scratch of [`spheres`]: with r = size of `T`, (3 r + 12) particles bytes, and at most 4.2 MB.
+/// Scratch of [`spheres`] and [`refine_centres`](super::refine_centres): with r = size of `T`, (3 r + 12) particles bytes, and at most 4.2 MB.
 ///
 /// # Errors
 /// `Overflow` for 2^32 particles and more, or if the bytes do not fit the address space.

@@ -132,11 +132,12 @@ pub(super) fn check<T: Real>(
     Ok(())
 }
 
-/// Sums over the particles of each group that has at least `n_min` of them here, and of each, however few, whose label is in `map`.
+/// Sums over the particles of each group that has at least `n_min` of them here, and of each, however few, whose label is in `map`, under its
+/// final label.
 ///
-/// `sums`: groups in order of their label; `particles / n_min` of them, and as many as the map has entries, are always enough. `labels`,
+/// `sums`: in order of their label; `particles / n_min` of them, and as many as the map has entries, are always enough. `labels`,
 /// `position` and `velocity`, if wanted: of the process's own particles, without ghosts. `map`: from [`fof_merge`](super::fof_merge); empty
-/// for a whole box. Returns how many groups there are.
+/// for a whole box. Returns how many there are: groups here, of which several may be parts of one with one final label.
 ///
 /// `scratch`: see [`halos_scratch`](super::halos_scratch).
 ///
