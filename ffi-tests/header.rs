@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 20] = [
+const SECTIONS: [(&str, &str); 21] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -17,6 +17,7 @@ const SECTIONS: [(&str, &str); 20] = [
     ("particles", "Particles"),
     ("pm", "Deposit and read-out"),
     ("cells", "Ghost planes and interlacing"),
+    ("kick", "Kick and drift"),
     ("binning", "Bins of spectra and correlation functions"),
     ("power", "Power spectrum"),
     ("correlation", "Correlation function"),

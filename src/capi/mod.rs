@@ -18,6 +18,7 @@ pub mod cosmology;
 pub mod exec;
 pub mod fft;
 pub mod initial;
+pub mod kick;
 pub mod mesh;
 pub mod mode_table;
 pub mod noise;

@@ -74,7 +74,7 @@ impl Places for fixpair_positions_f32 {
 }
 
 /// The two position structs, as one.
-trait Places: Copy {
+pub(super) trait Places: Copy {
     type Real: Real;
 
     /// Starts, stride, particles.
@@ -83,7 +83,10 @@ trait Places: Copy {
 
 /// # Safety
 /// `pointer` is null or points to positions whose elements nobody writes.
-unsafe fn positions<'a, P: Places>(border: &mut Border, pointer: *const P) -> Result<Positions<'a, P::Real>> {
+pub(super) unsafe fn positions<'a, P: Places>(
+    border: &mut Border,
+    pointer: *const P,
+) -> Result<Positions<'a, P::Real>> {
     // SAFETY: the caller's promise.
     let (start, stride, length) = unsafe { border.read_one(pointer) }?.parts();
     if stride == 0 {
@@ -141,7 +144,9 @@ pub unsafe extern "C" fn fixpair_deposit_scratch_f32(
     code(unsafe { query(scratch, region, particles, window, pm::deposit_scratch::<f32>) })
 }
 
-unsafe fn query(
+/// # Safety
+/// Pointers are null or point to one value.
+pub(super) unsafe fn query(
     scratch: *mut Layout,
     brick: *const fixpair_brick,
     particles: usize,
