@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 26] = [
+const SECTIONS: [(&str, &str); 27] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -18,6 +18,7 @@ const SECTIONS: [(&str, &str); 26] = [
     ("pm", "Deposit and read-out"),
     ("cells", "Ghost planes and interlacing"),
     ("force", "Forces on a mesh"),
+    ("kick", "Kick and drift"),
     ("factors", "Steps in time"),
     ("evolve", "Runs"),
     ("fof", "Friends of friends"),
@@ -80,6 +81,7 @@ fn generate() -> String {
     config.defines.insert("feature = std".into(), "FIXPAIR_THREADS".into());
     config.export.exclude.extend([
         "EARLIEST_GROWTH".into(),
+        "COLA_EXPONENT".into(),
         "STEP".into(),
         "ALIGN".into(),
         "HIGHEST_ORDER".into(),

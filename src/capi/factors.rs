@@ -15,7 +15,8 @@ pub const FIXPAIR_STEPPER_LEAPFROG: i32 = 1;
 pub const FIXPAIR_STEPPER_COLA: i32 = 2;
 
 /// The exponent n_LPT of COLA that its authors recommend.
-pub const FIXPAIR_COLA_EXPONENT: f64 = factors::COLA_EXPONENT;
+pub const FIXPAIR_COLA_EXPONENT: f64 = -2.5;
+const _: () = assert!(FIXPAIR_COLA_EXPONENT == factors::COLA_EXPONENT, "the header and Rust agree");
 
 pub(super) fn stepper(choice: i32, cola_exponent: f64) -> Result<Stepper> {
     match choice {

@@ -23,6 +23,7 @@ pub mod fof;
 pub mod force;
 pub mod halos;
 pub mod initial;
+pub mod kick;
 pub mod mesh;
 pub mod mode_table;
 pub mod noise;

@@ -156,7 +156,9 @@ pub unsafe extern "C" fn fixpair_deposit_scratch_f32(
     code(unsafe { query(scratch, region, particles, window, pm::deposit_scratch::<f32>) })
 }
 
-unsafe fn query(
+/// # Safety
+/// Pointers are null or point to one value.
+pub(super) unsafe fn query(
     scratch: *mut Layout,
     brick: *const fixpair_brick,
     particles: usize,

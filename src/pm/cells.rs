@@ -1,42 +1,14 @@
-//! The cells that one particle touches: their weights and where they lie.
+//! Where the cells that a particle touches lie.
 
 use core::ops::Range;
 
-use super::frame::Frame;
 use super::region::Region;
-use super::sort::Record;
-use super::window::weights;
-use crate::real::Real;
 
 /// A region's memory, and how its axes close.
 #[derive(Clone, Copy)]
 pub(super) struct Cells {
     count: [usize; 3],
     stride: [usize; 3],
-}
-
-/// A particle on its region: index of the first cell on each axis, and weights by number and axis.
-pub(super) struct Touched<T> {
-    pub(super) first: [usize; 3],
-    weight: [[T; 4]; 4],
-}
-
-impl<T: Real> Touched<T> {
-    /// # Safety
-    /// The record is one that a sorter made for this frame.
-    #[inline(always)]
-    pub(super) unsafe fn new<const P: usize>(frame: &Frame<T>, record: &Record<T>) -> Self {
-        // SAFETY: sorters make coordinates in [0, n).
-        let (index, fraction) = unsafe { frame.cells(record) };
-        let first = [index[0] as usize, index[1] as usize, index[2] as usize];
-        Self { first, weight: weights::<T, P>(&fraction) }
-    }
-
-    /// Weights along an axis.
-    #[inline(always)]
-    pub(super) fn along(&self, axis: usize) -> [T; 4] {
-        core::array::from_fn(|k| self.weight[k][axis])
-    }
 }
 
 impl Cells {
@@ -55,14 +27,6 @@ impl Cells {
     #[inline(always)]
     pub(super) fn start(&self, [x, y, z]: [usize; 3]) -> usize {
         x * self.stride[0] + y * self.stride[1] + z * self.stride[2]
-    }
-
-    /// Offsets of the first of the P x P rows of Q reals that a particle touches, if none of them runs over an edge and rows have unit
-    /// stride; row (i, j) then begins `i stride[0] + j stride[1]` further.
-    #[inline(always)]
-    pub(super) fn rows<const P: usize, const Q: usize>(&self, [x, y, z]: [usize; 3]) -> Option<usize> {
-        let inside = (x + P <= self.count[0]) & (y + P <= self.count[1]) & (z + Q <= self.count[2]);
-        if inside & (self.stride[2] == 1) { Some(x * self.stride[0] + y * self.stride[1] + z) } else { None }
     }
 
     /// Asks the cache for the rows in which particles of a tile begin, where they are many enough to use most lines: in random order each would

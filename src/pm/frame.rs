@@ -39,7 +39,7 @@ pub(super) struct Frame<T> {
     side: T,
     n: i32,
     /// The cell c of particles whose first cell is the region's first, on each axis.
-    base: [i32; 4],
+    base: [i32; 3],
     /// First cells that leave room for the window, on each axis: 0 .. limit.
     pub(super) limit: [i32; 3],
 }
@@ -71,7 +71,7 @@ impl<T: Real> Frame<T> {
             add: T::from_f64(lift),
             side: T::from_f64(n as f64),
             n: index(n)?,
-            base: [0; 4],
+            base: [0; 3],
             limit: [0; 3],
         };
         for axis in 0..3 {
@@ -80,24 +80,6 @@ impl<T: Real> Frame<T> {
             frame.limit[axis] = if region.is_empty() { 0 } else { index(room)? };
         }
         Ok(frame)
-    }
-
-    /// Indices in the region of the first cells touched, and fractions, of a particle with coordinates v; the fourth is 0.
-    ///
-    /// # Safety
-    /// The coordinates are in [0, n).
-    #[inline(always)]
-    pub(super) unsafe fn cells(&self, v: &[T; 4]) -> ([i32; 4], [T; 4]) {
-        let (mut index, mut fraction) = ([0; 4], [T::ZERO; 4]);
-        let v = [v[0], v[1], v[2], T::ZERO];
-        for axis in 0..4 {
-            // SAFETY: in [0, n), and n is an i32.
-            let (cell, rest) = unsafe { v[axis].split() };
-            let ahead = cell - self.base[axis];
-            index[axis] = if ahead < 0 { ahead + self.n } else { ahead };
-            fraction[axis] = rest;
-        }
-        (index, fraction)
     }
 
     /// Index in the region of the first cell touched on an axis.

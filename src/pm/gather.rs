@@ -1,14 +1,16 @@
 //! Meshes read out at blocks of particles, the adjoint of `scatter.rs`: weights and offsets of all of a block by lanes, once for all meshes, then
 //! row by row out of the meshes.
 
-use core::ops::Range;
-
 use super::cells::{Cells, prefetch};
+use super::columns::Positions;
 use super::frame::{BLOCK, Frame};
 use super::region::Region;
-use super::sort::Record;
+use super::sort::{CHUNK, Record, Sorter, block};
+use super::tiles::Tiling;
 use super::window::{Window, spline};
+use crate::exec::Exec;
 use crate::real::Real;
+use crate::simd::Simd;
 use crate::status::Result;
 
 /// Particles from asking for cells to reading them.
@@ -26,15 +28,15 @@ pub(super) struct Meshes<'a, T, const M: usize> {
 }
 
 /// Up to 64 particles, located; missing ones repeat another.
-pub(super) struct Places<T> {
-    pub(super) count: usize,
-    pub(super) v: [[T; BLOCK]; 3],
-    pub(super) index: [[i32; BLOCK]; 3],
+struct Places<T> {
+    count: usize,
+    v: [[T; BLOCK]; 3],
+    index: [[i32; BLOCK]; 3],
 }
 
 impl<T: Real> Places<T> {
     #[inline(always)]
-    pub(super) const fn new() -> Self {
+    const fn new() -> Self {
         Self { count: 0, v: [[T::ZERO; BLOCK]; 3], index: [[0; BLOCK]; 3] }
     }
 
@@ -58,11 +60,54 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
         Ok(Self { meshes, cells: Cells::new(region), frame, window })
     }
 
-    /// Asks the cache for the cells of a tile's particles.
-    pub(super) fn fetch(&self, first_cells: &[Range<usize>; 2], particles: usize) {
-        for mesh in self.meshes {
-            self.cells.fetch(mesh.as_ptr(), first_cells.clone(), particles);
-        }
+    /// Reads the meshes at a batch of `count` particles where they are, and hands the values of block after block to `take`: the number of its
+    /// first particle, how many they are, and the values. The sorter has found them all inside.
+    pub(super) fn read_in_order(
+        &self,
+        positions: &Positions<'_, T>,
+        first: usize,
+        count: usize,
+        simd: Simd,
+        exec: &dyn Exec,
+        take: impl Fn(usize, usize, &[[T; BLOCK]; M]) + Sync,
+    ) -> Result<()> {
+        exec.parallel_for(count.div_ceil(CHUNK), &|chunk| {
+            let end = count.min((chunk + 1) * CHUNK);
+            simd.vectorise(
+                #[inline(always)]
+                || {
+                    let (mut places, mut values) = (Places::new(), [[T::ZERO; BLOCK]; M]);
+                    for begin in (chunk * CHUNK..end).step_by(BLOCK) {
+                        places.count = BLOCK.min(end - begin);
+                        let Places { count, v, index } = &mut places;
+                        block(positions, first + begin, *count, self.frame, v, index);
+                        // SAFETY: all particles of the batch are inside.
+                        unsafe { self.read(&places, &mut values) };
+                        take(begin, places.count, &values);
+                    }
+                },
+            );
+        })
+    }
+
+    /// Replaces the first M numbers of a sorter's records by what the meshes are worth there.
+    pub(super) fn read_sorted(
+        &self,
+        sorter: &mut Sorter<'_, T>,
+        tiling: &Tiling,
+        simd: Simd,
+        exec: &dyn Exec,
+    ) -> Result<()> {
+        sorter.each_tile(exec, &|tile, records| {
+            for mesh in self.meshes {
+                self.cells.fetch(mesh.as_ptr(), tiling.first_cells(tile), records.len());
+            }
+            simd.vectorise(
+                #[inline(always)]
+                // SAFETY: the sorter's records, on this frame.
+                || unsafe { self.read_records(records) },
+            );
+        })
     }
 
     /// Replaces the first M numbers of records by what the meshes are worth there.
@@ -70,7 +115,7 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
     /// # Safety
     /// A sorter made the records on the same frame.
     #[inline(always)]
-    pub(super) unsafe fn read_records(&self, records: &mut [Record<T>]) {
+    unsafe fn read_records(&self, records: &mut [Record<T>]) {
         let mut places = Places::new();
         let mut values = [[T::ZERO; BLOCK]; M];
         for records in records.chunks_mut(BLOCK) {
@@ -100,7 +145,7 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
     /// # Safety
     /// Coordinates are in [0, n), also those past `count`, and first cells inside the frame's limits.
     #[inline(always)]
-    pub(super) unsafe fn read(&self, places: &Places<T>, values: &mut [[T; BLOCK]; M]) {
+    unsafe fn read(&self, places: &Places<T>, values: &mut [[T; BLOCK]; M]) {
         // SAFETY: as the caller says.
         unsafe {
             match self.window {
@@ -157,21 +202,21 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
                 }
                 continue;
             }
-            let weight: [[T; P]; P] = core::array::from_fn(|i| core::array::from_fn(|j| x[i] * y[j]));
-            for m in 0..M {
-                let mut sum = [T::ZERO; Q];
-                for i_row in 0..P {
-                    for j_row in 0..P {
-                        let at = start[i] + i_row * x_step + j_row * y_step;
-                        debug_assert!(at + Q <= self.meshes[m].len());
-                        // SAFETY: no row of it runs over an edge, so it is inside the region, and the mesh holds the region.
-                        let row = unsafe { &*self.meshes[m].as_ptr().add(at).cast::<[T; Q]>() };
-                        for k in 0..Q {
-                            sum[k] += weight[i_row][j_row] * row[k];
-                        }
+            let mut sum = [[T::ZERO; Q]; M];
+            for row in 0..P * P {
+                let weight = x[row / P] * y[row % P];
+                let at = start[i] + row / P * x_step + row % P * y_step;
+                for m in 0..M {
+                    debug_assert!(at + Q <= self.meshes[m].len());
+                    // SAFETY: no row of it runs over an edge, so it is inside the region, and the mesh holds the region.
+                    let row = unsafe { &*self.meshes[m].as_ptr().add(at).cast::<[T; Q]>() };
+                    for k in 0..Q {
+                        sum[m][k] += weight * row[k];
                     }
                 }
-                sums[m][i] = sum;
+            }
+            for m in 0..M {
+                sums[m][i] = sum[m];
             }
         }
         for m in 0..M {

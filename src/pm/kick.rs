@@ -8,12 +8,12 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use super::columns::{Positions, load_components, store_components};
+use super::columns::{Positions, load_components, load_flat, store_components, store_flat};
 use super::deposit::deposit_scratch;
 use super::frame::{Assignment, BLOCK, Frame, NOT_FINITE};
-use super::gather::{Meshes, Places};
+use super::gather::Meshes;
 use super::region::Region;
-use super::sort::{self, BATCH, CHUNK, Fourth, IN_ORDER, Sorter, block};
+use super::sort::{self, BATCH, Fourth, IN_ORDER, Sorter};
 use super::tiles::Tiling;
 use super::window::Window;
 use crate::exec::Exec;
@@ -102,60 +102,37 @@ pub(super) fn kick_with<T: Real>(
     let tiling = Tiling::of(region, &frame);
     let mut arena = Arena::new(scratch, sort::layout::<T>(particles, tiling.len())?)?;
     let mut sorter = Sorter::new(&mut arena, particles, tiling.len())?;
-    let target = Target { velocity, kick, lpt };
+    let velocity = &*velocity;
+    let flat = Positions::from(velocity).are_triples() && lpt.are_triples();
+    let target = Target { velocity, kick, lpt, flat, wrong: AtomicU32::new(0) };
     for first in (0..particles).step_by(BATCH) {
         let count = BATCH.min(particles - first);
         let changes = sorter.count(position, first, count, &frame, &tiling, simd, exec)?;
-        let wrong = AtomicU32::new(0);
         // The sums of a particle do not depend on it.
         if changes < count / IN_ORDER {
-            exec.parallel_for(count.div_ceil(CHUNK), &|chunk| {
-                let numbers = chunk * CHUNK..count.min((chunk + 1) * CHUNK);
-                let flags = simd.vectorise(
-                    #[inline(always)]
-                    || {
-                        let mut wrong = 0;
-                        let (mut places, mut forces) = (Places::new(), [[T::ZERO; BLOCK]; 3]);
-                        for begin in numbers.clone().step_by(BLOCK) {
-                            places.count = BLOCK.min(numbers.end - begin);
-                            let Places { count, v, index } = &mut places;
-                            block(position, first + begin, *count, &frame, v, index);
-                            // SAFETY: the sorter found all particles of the batch inside; each is kicked by one thread.
-                            unsafe {
-                                meshes.read(&places, &mut forces);
-                                wrong |= target.kick(first + begin, places.count, &forces);
-                            }
-                        }
-                        wrong
-                    },
-                );
-                wrong.fetch_or(flags, Ordering::Relaxed);
-            })?;
-        } else {
-            sorter.write(position, Fourth::One, first, count, &frame, simd, exec)?;
-            sorter.each_tile(exec, &|tile, records| {
-                meshes.fetch(&tiling.first_cells(tile), records.len());
-                simd.vectorise(
-                    #[inline(always)]
-                    // SAFETY: the sorter's records, on this frame.
-                    || unsafe { meshes.read_records(records) },
-                );
-            })?;
-            sorter.unsort_blocks(
+            meshes.read_in_order(
+                position,
+                first,
                 count,
                 simd,
                 exec,
                 #[inline(always)]
-                |begin, count, forces| {
-                    // SAFETY: the particles exist, and each is kicked by one thread.
-                    let flags = unsafe { target.kick(first + begin, count, forces) };
-                    if flags != 0 {
-                        wrong.fetch_or(flags, Ordering::Relaxed);
-                    }
-                },
+                // SAFETY: the particles exist, and each is kicked by one thread.
+                |begin, count, forces| unsafe { target.kick(first + begin, count, forces) },
+            )?;
+        } else {
+            sorter.write(position, Fourth::One, first, count, &frame, simd, exec)?;
+            meshes.read_sorted(&mut sorter, &tiling, simd, exec)?;
+            sorter.unsort(
+                count,
+                simd,
+                exec,
+                #[inline(always)]
+                // SAFETY: as above.
+                |begin, count, forces| unsafe { target.kick(first + begin, count, forces) },
             )?;
         }
-        sort::check(&wrong)?;
+        sort::check(&target.wrong)?;
     }
     Ok(())
 }
@@ -165,37 +142,74 @@ struct Target<'a, 'b, T> {
     velocity: &'a Components<'b, T>,
     kick: &'a Kick,
     lpt: Terms<'a, T>,
+    /// Velocities and displacements are all triples.
+    flat: bool,
+    /// What is wrong with any of them.
+    wrong: AtomicU32,
 }
 
 impl<T: Real> Target<'_, '_, T> {
-    /// Kicks a block of consecutive particles. Returns what is wrong with any of them.
+    /// Kicks a block of consecutive particles.
     ///
     /// # Safety
-    /// The particles exist, and no other thread touches their velocities now.
+    /// The particles exist, `count` is at most [`BLOCK`], and no other thread touches their velocities now.
     #[inline(always)]
-    unsafe fn kick(&self, first: usize, count: usize, forces: &[[T; BLOCK]; 3]) -> u32 {
+    unsafe fn kick(&self, first: usize, count: usize, forces: &[[T; BLOCK]; 3]) {
         let mut u = [[T::ZERO; BLOCK]; 3];
-        // SAFETY: as the caller says.
-        unsafe { load_components(self.velocity, first, count, &mut u) };
+        // SAFETY: as the caller says; displacements are as many as particles, and triples where the velocities are and `flat` says so.
+        let sound = unsafe {
+            if self.flat && count == BLOCK {
+                let mut triples = [[T::ZERO; BLOCK]; 3];
+                for i in 0..BLOCK {
+                    for axis in 0..3 {
+                        triples.as_flattened_mut()[3 * i + axis] = forces[axis][i];
+                    }
+                }
+                load_flat(&Positions::from(self.velocity), first, &mut u);
+                let sound = self.sum::<true>(first, BLOCK, &triples, &mut u);
+                store_flat(self.velocity, first, &u);
+                sound
+            } else {
+                load_components(self.velocity, first, count, &mut u);
+                let sound = self.sum::<false>(first, count, forces, &mut u);
+                store_components(self.velocity, first, count, &u);
+                sound
+            }
+        };
+        if !sound {
+            self.wrong.fetch_or(NOT_FINITE, Ordering::Relaxed);
+        }
+    }
+
+    /// New velocities of a block; returns whether all of them are finite.
+    ///
+    /// # Safety
+    /// As `kick`.
+    #[inline(always)]
+    unsafe fn sum<const FLAT: bool>(
+        &self,
+        first: usize,
+        count: usize,
+        forces: &[[T; BLOCK]; 3],
+        u: &mut [[T; BLOCK]; 3],
+    ) -> bool {
+        let Kick { keep, force, .. } = *self.kick;
         let mut sum = [[0.0; BLOCK]; 3];
         for axis in 0..3 {
             for i in 0..BLOCK {
-                sum[axis][i] =
-                    self.kick.keep * u[axis][i].to_f64() + self.kick.force * forces[axis][i].to_f64();
+                sum[axis][i] = keep * u[axis][i].to_f64() + force * forces[axis][i].to_f64();
             }
         }
-        // SAFETY: there are as many displacements as particles.
-        unsafe { self.lpt.add(first, count, &mut sum) };
+        // SAFETY: as the caller says.
+        unsafe { self.lpt.add::<FLAT>(first, count, &mut sum) };
         let mut lost = 0;
         for axis in 0..3 {
             for i in 0..BLOCK {
                 u[axis][i] = T::from_f64(sum[axis][i]);
-                lost |= u32::from(!u[axis][i].is_finite() & (i < count));
+                lost |= u32::from(!u[axis][i].is_finite() & (FLAT | (i < count)));
             }
         }
-        // SAFETY: as the caller says.
-        unsafe { store_components(self.velocity, first, count, &u) };
-        lost * NOT_FINITE
+        lost == 0
     }
 }
 
@@ -223,16 +237,32 @@ impl<'a, T: Real> Terms<'a, T> {
         Ok(Self { terms })
     }
 
-    /// Adds coefficient times displacement to the sums of a block.
+    /// Are all of them x0 y0 z0 x1 y1 z1 ... ?
+    pub(super) fn are_triples(&self) -> bool {
+        self.terms.iter().flatten().all(|(displacement, _)| displacement.are_triples())
+    }
+
+    /// Adds coefficient times displacement to the sums of a block, by component or, if `FLAT`, as triples lie.
     ///
     /// # Safety
-    /// `first + count` is at most the number of particles, and `count` at most [`BLOCK`].
+    /// `first + count` is at most the number of particles, and `count` at most [`BLOCK`]; if `FLAT`, it is [`BLOCK`] and all are triples.
     #[inline(always)]
-    pub(super) unsafe fn add(&self, first: usize, count: usize, sum: &mut [[f64; BLOCK]; 3]) {
+    pub(super) unsafe fn add<const FLAT: bool>(
+        &self,
+        first: usize,
+        count: usize,
+        sum: &mut [[f64; BLOCK]; 3],
+    ) {
         let mut psi = [[T::ZERO; BLOCK]; 3];
         for (displacement, coefficient) in self.terms.iter().flatten() {
             // SAFETY: as the caller says.
-            unsafe { displacement.load_all(first, count, 0, &mut psi) };
+            unsafe {
+                if FLAT {
+                    load_flat(displacement, first, &mut psi);
+                } else {
+                    displacement.load_all(first, count, 0, &mut psi);
+                }
+            }
             for axis in 0..3 {
                 for i in 0..BLOCK {
                     sum[axis][i] += coefficient * psi[axis][i].to_f64();

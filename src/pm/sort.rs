@@ -5,6 +5,7 @@
 
 use core::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 
+use super::cells::prefetch;
 use super::columns::{Column, Positions};
 use super::frame::{BLOCK, Frame, NOT_FINITE, OUTSIDE};
 use super::tiles::Tiling;
@@ -22,6 +23,9 @@ pub(super) const CHUNK: usize = 1 << 15;
 
 /// Particles that change tile no more than once in so many are near enough to some order that copying them to a better one gains nothing.
 pub(super) const IN_ORDER: usize = 8;
+
+/// Particles from asking for a record to reading it.
+const AHEAD: usize = 16;
 
 /// Consecutive particles in one tile: the first one's number in the batch, and how many they are.
 pub(super) type Run = [u32; 2];
@@ -101,38 +105,14 @@ impl<'a, T: Real> Sorter<'a, T> {
         })
     }
 
-    /// Hands the records of the batch of `count` sorted last to `take` in the order they had before, with their numbers. Once a batch.
-    pub(super) fn unsort(
-        &mut self,
-        count: usize,
-        exec: &dyn Exec,
-        take: &(dyn Fn(usize, &Record<T>) + Sync),
-    ) -> Result<()> {
-        let tiles = self.starts.len() - 1;
-        let chunks = count.div_ceil(CHUNK);
-        let (keys, records) = (&self.keys[..count], &*self.records);
-        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
-        exec.parallel_for(chunks, &|chunk| {
-            let begin = chunk * CHUNK;
-            // SAFETY: chunks have counters of their own, inside the slice.
-            let ends = unsafe { counters.part(chunk * tiles, tiles) };
-            // Writing left the counters behind each tile's last particle of the chunk.
-            for (i, &key) in keys[begin..count.min(begin + CHUNK)].iter().enumerate().rev() {
-                let place = &mut ends[usize::from(key)];
-                *place -= 1;
-                take(begin + i, &records[*place as usize]);
-            }
-        })
-    }
-
-    /// As `unsort`, in blocks of consecutive particles: `take` gets the number of the first, how many they are, and their records' first three
-    /// numbers.
-    pub(super) fn unsort_blocks(
+    /// Hands the first M numbers of the records of the batch of `count` sorted last to `take`, as columns for blocks of particles in the order
+    /// they had before: the number of the first, how many they are, and the columns. Once a batch.
+    pub(super) fn unsort<const M: usize>(
         &mut self,
         count: usize,
         simd: Simd,
         exec: &dyn Exec,
-        take: impl Fn(usize, usize, &[[T; BLOCK]; 3]) + Sync,
+        take: impl Fn(usize, usize, &[[T; BLOCK]; M]) + Sync,
     ) -> Result<()> {
         let tiles = self.starts.len() - 1;
         let chunks = count.div_ceil(CHUNK);
@@ -146,18 +126,23 @@ impl<'a, T: Real> Sorter<'a, T> {
             simd.vectorise(
                 #[inline(always)]
                 || {
-                    let mut columns = [[T::ZERO; BLOCK]; 3];
+                    let mut columns = [[T::ZERO; BLOCK]; M];
                     // Writing left the counters behind each tile's last particle of the chunk.
-                    for (b, keys) in keys.chunks(BLOCK).enumerate().rev() {
-                        for (i, &key) in keys.iter().enumerate().rev() {
-                            let place = &mut ends[usize::from(key)];
+                    for first in (0..keys.len()).step_by(BLOCK).rev() {
+                        let length = BLOCK.min(keys.len() - first);
+                        for i in (0..length).rev() {
+                            // Where a particle some way ahead will be found, or near it.
+                            let later = keys[(first + i).saturating_sub(AHEAD)];
+                            let later = ends[usize::from(later)].wrapping_sub(1) as usize;
+                            prefetch::<_, true>(records.as_ptr().wrapping_add(later));
+                            let place = &mut ends[usize::from(keys[first + i])];
                             *place -= 1;
                             let record = &records[*place as usize];
-                            for axis in 0..3 {
-                                columns[axis][i] = record[axis];
+                            for m in 0..M {
+                                columns[m][i] = record[m];
                             }
                         }
-                        take(begin + b * BLOCK, keys.len(), &columns);
+                        take(begin + first, length, &columns);
                     }
                 },
             );

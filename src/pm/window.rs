@@ -82,16 +82,3 @@ pub(super) fn spline<T: Real, const P: usize>(f: T) -> [T; 4] {
         ],
     }
 }
-
-/// [`spline`] on four axes: weight by weight.
-#[inline(always)]
-pub(super) fn weights<T: Real, const P: usize>(f: &[T; 4]) -> [[T; 4]; 4] {
-    let mut weights = [[T::ZERO; 4]; 4];
-    for axis in 0..4 {
-        let along = spline::<T, P>(f[axis]);
-        for k in 0..4 {
-            weights[k][axis] = along[k];
-        }
-    }
-    weights
-}

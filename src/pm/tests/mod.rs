@@ -14,7 +14,7 @@ use std::vec::Vec;
 use super::deposit::deposit_with;
 use super::interlace::interlace_with;
 use super::read_out::read_out_with;
-use super::window::weights;
+use super::window::spline as weights;
 use super::*;
 use crate::exec::{Exec, Serial, Threads};
 use crate::initial::particles::Components;
@@ -122,7 +122,7 @@ fn coordinates(n: usize) -> Vec<f64> {
 }
 
 fn axis_weights<const P: usize>(f: f64) -> [f64; 4] {
-    weights::<f64, P>(&[f, 0.25, f, 0.5]).map(|weight| weight[2])
+    weights::<f64, P>(f)
 }
 
 /// A few thousand particles on a mesh of several tiles: in and out of the box, some of them in lattice order.
