@@ -147,45 +147,82 @@ fn pairs(law: &ForceLaw, window: Window, range: [f64; 2], tree: bool) -> Vec<Pai
     all
 }
 
+/// Of the pairs with separations in `within`: how far the mean force is from the true one, the r.m.s. error of a pair, and the worst.
+fn errors(pairs: &[Pair], within: [f64; 2]) -> [f64; 3] {
+    let chosen = || pairs.iter().filter(|pair| (within[0]..within[1]).contains(&pair.r));
+    let count = chosen().count() as f64;
+    let mean = chosen().map(|pair| pair.radial - 1.0).sum::<f64>() / count;
+    let square = chosen().map(|pair| pair.error * pair.error).sum::<f64>() / count;
+    [mean.abs(), square.sqrt(), chosen().fold(0.0, |worst, pair| pair.error.max(worst))]
+}
+
+const BEYOND_THREE_CELLS: [[f64; 2]; 5] = [[3.0, 3.5], [3.5, 4.0], [4.0, 6.0], [6.0, 10.0], [10.0, 16.0]];
+
+/// FastPM's default.
+fn four_point() -> ForceLaw {
+    ForceLaw { gradient: Difference::FourPoint, ..ForceLaw::default() }
+}
+
 #[test]
-fn explore() {
-    let Ok(lines) = std::env::var("PAIR_LAWS") else { return };
-    for line in lines.split(';') {
-        let v: Vec<f64> = line.split_whitespace().map(|x| x.parse().unwrap()).collect();
-        let window = Window::try_from(v[0] as i32).unwrap();
-        let law = ForceLaw {
-            laplacian: (v[2] as i32).try_into().unwrap(),
-            gradient: (v[3] as i32).try_into().unwrap(),
-            window: (v[1] > 0.0).then_some((window, v[1] as u32)),
-            split_scale: v[4],
-        };
-        let pairs = pairs(&law, window, [v[6], v[7]], v[5] > 0.0);
-        let mut text = std::format!("{line}: ");
-        for (from, to) in [
-            (0.0, 0.5),
-            (0.5, 1.0),
-            (1.0, 2.0),
-            (2.0, 3.0),
-            (3.0, 3.5),
-            (3.5, 4.0),
-            (4.0, 6.0),
-            (6.0, 10.0),
-            (10.0, 32.0),
-        ] {
-            let within: Vec<&Pair> = pairs.iter().filter(|p| p.r >= from && p.r < to).collect();
-            if within.is_empty() {
-                continue;
+fn mean_pair_forces_are_newtons_to_two_per_cent_beyond_three_cells() {
+    let two_point =
+        ForceLaw { laplacian: Difference::TwoPoint, gradient: Difference::TwoPoint, ..ForceLaw::default() };
+    for window in [Window::CloudInCell, Window::TriangularShapedCloud, Window::PiecewiseCubicSpline] {
+        for law in [four_point(), two_point] {
+            let pairs = pairs(&law, window, [3.0, 16.0], false);
+            for within in BEYOND_THREE_CELLS {
+                let [mean, ..] = errors(&pairs, within);
+                assert!(mean < 0.02, "{window:?} {law:?} {within:?}: {mean}");
             }
-            let mean = within.iter().map(|p| p.radial).sum::<f64>() / within.len() as f64;
-            let rms = (within.iter().map(|p| p.error * p.error).sum::<f64>() / within.len() as f64).sqrt();
-            let worst = within.iter().fold(0.0, |w: f64, p| w.max(p.error));
-            text += &std::format!(
-                " {from}:[{:+.3} {:.3} {:.3}]",
-                100.0 * (mean - 1.0),
-                100.0 * rms,
-                100.0 * worst
+        }
+    }
+}
+
+#[test]
+fn single_pair_forces_are_newtons_to_two_per_cent_beyond_three_cells() {
+    // R.m.s. over places and directions. CIC does not reach it (5% at 3 cells), nor do two-point gradients
+    // (6%), nor exact ones that nothing smooths, which ring along the axes.
+    let window = Window::PiecewiseCubicSpline;
+    let smoothed = ForceLaw { window: Some((window, 1)), split_scale: 0.53, ..four_point() };
+    let both = ForceLaw { laplacian: Difference::FourPoint, ..four_point() };
+    for (law, window) in [(smoothed, window), (both, window), (both, Window::TriangularShapedCloud)] {
+        let pairs = pairs(&law, window, [3.0, 16.0], false);
+        for within in BEYOND_THREE_CELLS {
+            let [mean, rms, worst] = errors(&pairs, within);
+            assert!(mean < 0.01 && rms < 0.02, "{law:?} {within:?}: {mean} {rms}");
+            // The worst of 8000 pairs.
+            let limit = if within[0] < 3.5 { 0.032 } else { 0.021 };
+            assert!(worst < limit || law.window.is_none(), "{within:?}: {worst}");
+        }
+    }
+}
+
+#[test]
+fn tree_and_mesh_make_newtons_force() {
+    let every = [[0.5, 1.0], [1.0, 2.0], [2.0, 3.0], [3.0, 4.0], [4.0, 6.0], [6.0, 8.0]];
+    // Dispersions of the split in cells; r.m.s. and worst error of a pair. Gadget's 1.25 leaves the mesh a per cent to get wrong, a wider one less.
+    for (split_scale, rms_limit, worst_limit) in [(1.25, 0.015, 0.04), (2.0, 0.005, 0.015)] {
+        let window = Window::CloudInCell;
+        let law = ForceLaw { window: Some((window, 2)), split_scale, ..four_point() };
+        let pairs = pairs(&law, window, [0.5, 8.0], true);
+        for within in every {
+            let [mean, rms, worst] = errors(&pairs, within);
+            assert!(
+                mean < 0.005 && rms < rms_limit && worst < worst_limit,
+                "{within:?}: {mean} {rms} {worst}"
             );
         }
-        std::println!("{text}");
+    }
+}
+
+#[test]
+fn dividing_by_the_window_takes_its_smoothing_away() {
+    for (window, smoothed) in [(Window::CloudInCell, 0.04), (Window::TriangularShapedCloud, 0.06)] {
+        let law = ForceLaw { split_scale: 1.25, ..four_point() };
+        let sharp = ForceLaw { window: Some((window, 2)), ..law };
+        let [blunt, sharp] =
+            [law, sharp].map(|law| errors(&pairs(&law, window, [2.0, 4.0], true), [2.0, 4.0]));
+        assert!(blunt[0] > smoothed && sharp[0] < 0.005, "{window:?}: {blunt:?} {sharp:?}");
+        assert!(sharp[1] < 0.4 * blunt[1], "{window:?}: {blunt:?} {sharp:?}");
     }
 }
