@@ -1930,9 +1930,9 @@ fixpair_status_t fixpair_force_scratch(struct fixpair_layout *scratch, size_t n)
  *
  *    memset(x, 0, len * sizeof *x);
  *    fixpair_deposit_f64(x, len, &cells, ...);
- *    fft.forward(fft.context, x, len);
+ *    fft.forward(fft.context, x);
  *    fixpair_forces_f64(x, y, z, len, &modes, &law, L, total_weight, ...);
- *    fft.inverse(fft.context, x, len);                   and y, z
+ *    fft.inverse(fft.context, x);                        and y, z
  *    fixpair_read_out_f64(force_x, 3, x, len, &cells, ...);    and y, z, with the same window
  *
  * In/Out: x     len reals on the brick: F_k, the forward transform of deposited weights, not normalised; then the modes of F_x, whose inverse transform,
