@@ -36,9 +36,6 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* The exponent n that Tassev et al. recommend for about ten steps from z = 9. */
-#define COLA_EXPONENT (-2.5)
-
 /* Done. */
 #define FIXPAIR_OK 0
 
@@ -192,7 +189,8 @@
 /* COLA (Tassev, Zaldarriaga & Eisenstein 2013, arXiv:1301.0322): exact for second-order Lagrangian theory. */
 #define FIXPAIR_STEPPER_COLA 2
 
-
+/* The exponent n_LPT of COLA that its authors recommend. */
+#define FIXPAIR_COLA_EXPONENT (-2.5)
 
 /* Positions have reached the next scale factor of the list. */
 #define FIXPAIR_EVENT_STEP 0
@@ -603,6 +601,12 @@ typedef struct fixpair_force_law {
   /* r_s, in the unit of the box: 0 for the whole force. A Gaussian filter of dispersion s in x is s/sqrt 2. */
   double split_scale;
 } fixpair_force_law;
+
+/* Three components of each particle that are read and written: the same struct as fixpair_components_f64. */
+typedef struct fixpair_components_f64 fixpair_vectors_f64;
+
+/* Three components of each particle that are read and written: the same struct as fixpair_components_f32. */
+typedef struct fixpair_components_f32 fixpair_vectors_f32;
 
 /*
  * What a drift or a kick adds: factor times velocity or force, and first psi1 + second psi2, with psi1 and psi2 the displacements of both orders over their
@@ -2034,6 +2038,134 @@ fixpair_status_t fixpair_potential_f32(float *modes,
                                        void *scratch,
                                        size_t scratch_len,
                                        const struct fixpair_exec *exec);
+
+/*
+ * Kick and drift
+ * ==============
+ */
+
+/*
+ * Scratch of fixpair_kick_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1)
+ * bytes, each rounded up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
+ *
+ * Out: scratch
+ * In:  region     of configuration space; may run over the edge
+ *      particles  as many as will be passed, or more
+ *      window     FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _CHOICE, or why the region is refused
+ */
+fixpair_status_t fixpair_kick_scratch_f64(struct fixpair_layout *scratch,
+                                          const struct fixpair_brick *region,
+                                          size_t particles,
+                                          int32_t window);
+
+/* fixpair_kick_scratch_f64 in single precision: 16 m instead of 32 m, at most 41 MB. */
+fixpair_status_t fixpair_kick_scratch_f32(struct fixpair_layout *scratch,
+                                          const struct fixpair_brick *region,
+                                          size_t particles,
+                                          int32_t window);
+
+/*
+ * Kicks particles: u_i <- keep u_i + force F(x_i) + first psi1_i + second psi2_i, F(x_i) = sum_c W(x_c - x_i) F_c as fixpair_read_out_f64 has it.
+ *
+ * The factors are those of the time step and carry its units. psi1 and psi2 are displacements of the particles themselves, for COLA, whose
+ * velocities are what Lagrangian perturbation theory leaves over. Sums over the four terms are in double precision and rounded once; the
+ * result is the same, bit for bit, on any number of threads.
+ *
+ * In/Out: velocity  u; may share an array of structs with the positions
+ * In:  position
+ *      force_x, force_y, force_z  components of F, mesh_len reals each on the region, ghost planes filled (fixpair_copy_cells_f64)
+ *      region    of configuration space; may run over the edge (fixpair_brick_with_ghosts)
+ *      box_size, window, shift  as fixpair_deposit_f64
+ *      keep, force, first, second  factors
+ *      psi1      NULL if first is 0
+ *      psi2      NULL if second is 0
+ *      scratch   scratch_len bytes, see fixpair_kick_scratch_f64
+ *      exec      or NULL
+ * Returns: as fixpair_deposit_f64; FIXPAIR_ERROR_NULL also for displacements with a factor that are NULL; FIXPAIR_ERROR_NOT_FINITE for
+ *          box_size, shift and factors, or for a position, velocity, force or displacement, after which, as after FIXPAIR_ERROR_OUTSIDE,
+ *          some velocities are kicked, some not; after FIXPAIR_ERROR_HOOK they are undefined
+ * Cost: on one core in single precision with CIC COST_HERE
+ */
+fixpair_status_t fixpair_kick_f64(const fixpair_vectors_f64 *velocity,
+                                  const struct fixpair_positions_f64 *position,
+                                  const double *force_x,
+                                  const double *force_y,
+                                  const double *force_z,
+                                  size_t mesh_len,
+                                  const struct fixpair_brick *region,
+                                  double box_size,
+                                  int32_t window,
+                                  double shift,
+                                  double keep,
+                                  double force,
+                                  double first,
+                                  double second,
+                                  const struct fixpair_positions_f64 *psi1,
+                                  const struct fixpair_positions_f64 *psi2,
+                                  void *scratch,
+                                  size_t scratch_len,
+                                  const struct fixpair_exec *exec);
+
+/* fixpair_kick_f64 in single precision: velocities, positions, displacements and meshes. Factors stay double. */
+fixpair_status_t fixpair_kick_f32(const fixpair_vectors_f32 *velocity,
+                                  const struct fixpair_positions_f32 *position,
+                                  const float *force_x,
+                                  const float *force_y,
+                                  const float *force_z,
+                                  size_t mesh_len,
+                                  const struct fixpair_brick *region,
+                                  double box_size,
+                                  int32_t window,
+                                  double shift,
+                                  double keep,
+                                  double force,
+                                  double first,
+                                  double second,
+                                  const struct fixpair_positions_f32 *psi1,
+                                  const struct fixpair_positions_f32 *psi2,
+                                  void *scratch,
+                                  size_t scratch_len,
+                                  const struct fixpair_exec *exec);
+
+/*
+ * Moves particles: x_i <- x_i + factor u_i + first psi1_i + second psi2_i, wrapped into [0, L).
+ *
+ * The factors are those of the time step and carry its units. psi1 and psi2 are displacements of the particles themselves, for COLA. Sums are
+ * in double precision and rounded once; no position becomes L itself. The result is the same, bit for bit, on any number of threads.
+ *
+ * In/Out: position  any finite numbers before; may share an array of structs with the velocities
+ * In:  velocity  u
+ *      box_size  L
+ *      factor, first, second
+ *      psi1      NULL if first is 0
+ *      psi2      NULL if second is 0
+ *      exec      or NULL
+ * Returns: 0, FIXPAIR_ERROR_LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE; FIXPAIR_ERROR_NULL also for displacements with a factor that are
+ *          NULL; FIXPAIR_ERROR_NOT_FINITE for box_size and factors, or for a particle that ends nowhere or more than 1e9 boxes away, after
+ *          which, as after FIXPAIR_ERROR_HOOK, positions are undefined
+ * Cost: one pass over positions, velocities and displacements
+ */
+fixpair_status_t fixpair_drift_f64(const fixpair_vectors_f64 *position,
+                                   const struct fixpair_positions_f64 *velocity,
+                                   double box_size,
+                                   double factor,
+                                   double first,
+                                   double second,
+                                   const struct fixpair_positions_f64 *psi1,
+                                   const struct fixpair_positions_f64 *psi2,
+                                   const struct fixpair_exec *exec);
+
+/* fixpair_drift_f64 in single precision: positions, velocities and displacements. Factors stay double. */
+fixpair_status_t fixpair_drift_f32(const fixpair_vectors_f32 *position,
+                                   const struct fixpair_positions_f32 *velocity,
+                                   double box_size,
+                                   double factor,
+                                   double first,
+                                   double second,
+                                   const struct fixpair_positions_f32 *psi1,
+                                   const struct fixpair_positions_f32 *psi2,
+                                   const struct fixpair_exec *exec);
 
 /*
  * Steps in time
