@@ -22,6 +22,13 @@
 //! Of total weight M, a particle of weight w pulls with w/M L^3/(4 pi r^2). Any of these forces, read out with the window of the deposit, is antisymmetric in the two
 //! particles: no self-force, and momentum is conserved to rounding.
 //!
+//! How near that is to Newton's force in the periodic box, for pairs 3 to 16 cells apart on a mesh of 64^3 (tested): averaged over places and directions, within 1.2% for
+//! CIC, TSC and PCS with any gradient but an exact one. R.m.s. of single pairs, as they lie to the mesh, at its largest (3 to 3.5 cells): with `FourPoint` gradients 5% for CIC, 2.2% for
+//! TSC and PCS, 1.3% if the Laplacian is `FourPoint` too; 1.8% for PCS with `Exact`, `FourPoint`, (PCS, 1), 0.53 L/n, where no pair beyond 3.5 cells is off by more than 2.1%. What ends
+//! at the edge of the mesh's modes without being small there rings along the axes: exact gradients do, and the more so where the window is divided out
+//! without a split (CIC, exact: 13%; sharpened: above 100%). With the split 1.25 L/n and `FourPoint` gradients, tree and mesh together are right to 1.2% (CIC), 0.37% (TSC) and 0.35%
+//! (PCS) r.m.s. at any separation, and to 0.03% with PCS and exact gradients; without division by the window 5 to 9% too weak.
+//!
 //! Zero modes: k = 0, for the mean density pulls nowhere; and the Nyquist modes, |n_a| = n/2 on any axis. They stand for two wave vectors at once, which ask for opposite
 //! forces, so that an odd derivative has no value there; dropping them from all components and the potential leaves one potential for all three.
 
