@@ -98,7 +98,7 @@ pub(super) unsafe fn query(
 /// receive ghosts: copies, with ids, of all particles of other processes within l of the region, periodically;
 ///     put them behind the own ones;
 /// fixpair_fof_labels_f32(labels, own + ghosts, &position, ids, own + ghosts, box_size, l_of_all, ...);
-/// for each ghost, get from its owner the label that it has there: pairs[g] = {label here, label there};
+/// for each ghost, get from its owner the label that it has there: pairs[2 g] = label here, pairs[2 g + 1] = label there;
 /// gather the pairs of all processes on all; equal ones may be dropped;
 /// fixpair_fof_merge(map, map_len, &entries, pairs, pairs_len);
 /// fixpair_halo_sums_f32(sums, ..., labels, own, ..., n_min, map, entries, ...);   only own particles
@@ -191,10 +191,10 @@ unsafe fn find<P: Places>(
 
 /// From pairs of labels that belong to one group to the final label of each: the smallest of all that pairs connect.
 ///
-/// Out: map      entries {label, final label}, labels increasing; those that occur in no pair stay as they are
+/// Out: map      entries, one after the other: label, final label; labels increase. Labels that occur in no pair stay as they are
 ///      entries  how many: at most 2 pairs_len
-/// In:  map_len  2 pairs_len or more
-///      pairs    pairs_len pairs of labels, in any order; see fixpair_fof_labels_f64
+/// In:  map_len  entries that fit, 2 numbers each: 2 pairs_len or more
+///      pairs    pairs_len pairs of labels, 2 numbers each, in any order; see fixpair_fof_labels_f64
 /// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW
 /// Cost: a sort of 2 pairs_len entries
 ///
@@ -202,18 +202,18 @@ unsafe fn find<P: Places>(
 /// Pointers are null or point to as many values as stated.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_fof_merge(
-    map: *mut [u64; 2],
+    map: *mut u64,
     map_len: usize,
     entries: *mut usize,
-    pairs: *const [u64; 2],
+    pairs: *const u64,
     pairs_len: usize,
 ) -> fixpair_status_t {
     code((|| {
         let mut border = Border::new();
         // SAFETY: the caller's promise.
         unsafe {
-            let (map, entries) = (border.write(map, map_len)?, border.write_one(entries)?);
-            *entries = halos::fof_merge(map, border.read(pairs, pairs_len)?)?;
+            let (map, entries) = (border.write(map.cast(), map_len)?, border.write_one(entries)?);
+            *entries = halos::fof_merge(map, border.read(pairs.cast(), pairs_len)?)?;
         }
         Ok(())
     })())
@@ -222,7 +222,7 @@ pub unsafe extern "C" fn fixpair_fof_merge(
 /// Replaces labels by their final ones, where the map holds them.
 ///
 /// In/out: labels  len labels
-/// In:     map     map_len entries of fixpair_fof_merge
+/// In:     map     map_len entries of fixpair_fof_merge, 2 numbers each
 ///         exec    or NULL
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_TABLE unless the labels of the map increase,
 ///          FIXPAIR_ERROR_HOOK, after which some labels are replaced
@@ -233,7 +233,7 @@ pub unsafe extern "C" fn fixpair_fof_merge(
 pub unsafe extern "C" fn fixpair_fof_relabel(
     labels: *mut u64,
     len: usize,
-    map: *const [u64; 2],
+    map: *const u64,
     map_len: usize,
     exec: *const fixpair_exec,
 ) -> fixpair_status_t {
@@ -241,7 +241,7 @@ pub unsafe extern "C" fn fixpair_fof_relabel(
         let mut border = Border::new();
         // SAFETY: the caller's promise.
         unsafe {
-            let (labels, map) = (border.write(labels, len)?, border.read(map, map_len)?);
+            let (labels, map) = (border.write(labels, len)?, border.read(map.cast(), map_len)?);
             halos::fof_relabel(labels, map, &HostExec::new(&mut border, exec)?)
         }
     })())

@@ -214,7 +214,7 @@ unsafe fn particles<'a, P: Places>(
 ///      velocity  of len particles, or NULL
 ///      box_size  L
 ///      n_min     1 or more
-///      map       map_len entries of fixpair_fof_merge; or NULL and 0 for a whole box
+///      map       map_len entries of fixpair_fof_merge, 2 numbers each; or NULL and 0 for a whole box
 ///      scratch   scratch_len bytes, see fixpair_halos_scratch
 ///      exec      or NULL
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH, _TABLE for the map; FIXPAIR_ERROR_LENGTH, also if
@@ -234,7 +234,7 @@ pub unsafe extern "C" fn fixpair_halo_sums_f64(
     velocity: *const fixpair_positions_f64,
     box_size: f64,
     n_min: u64,
-    map: *const [u64; 2],
+    map: *const u64,
     map_len: usize,
     scratch: *mut c_void,
     scratch_len: usize,
@@ -276,7 +276,7 @@ pub unsafe extern "C" fn fixpair_halo_sums_f32(
     velocity: *const fixpair_positions_f32,
     box_size: f64,
     n_min: u64,
-    map: *const [u64; 2],
+    map: *const u64,
     map_len: usize,
     scratch: *mut c_void,
     scratch_len: usize,
@@ -313,7 +313,7 @@ unsafe fn sum<P: Places>(
     velocity: *const P,
     box_size: f64,
     n_min: u64,
-    map: *const [u64; 2],
+    map: *const u64,
     map_len: usize,
     scratch: *mut c_void,
     scratch_len: usize,
@@ -325,7 +325,7 @@ unsafe fn sum<P: Places>(
         let (sums, count) = (border.write(sums, sums_len)?, border.write_one(count)?);
         let labels = border.read(labels, len)?;
         let (position, velocity) = particles(&mut border, position, velocity)?;
-        let map = border.read(map, map_len)?;
+        let map = border.read(map.cast(), map_len)?;
         let scratch = border.scratch(scratch, scratch_len)?;
         let exec = HostExec::new(&mut border, exec)?;
         *count = halos::halo_sums(

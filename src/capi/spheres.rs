@@ -92,7 +92,7 @@ pub unsafe extern "C" fn fixpair_spheres_scratch_f32(
 /// M = (4 pi/3) R^3 Delta rho_m holds exactly. Members, mass and radius are 0 if fewer than n_min particles lie within R_n_min: not that dense.
 ///
 /// Out: spheres            for each centre, each overdensity; spheres_len = centres_len x overdensities_len
-/// In:  centres            centres_len of them; any finite numbers, taken modulo L. See fixpair_refine_centres_f64
+/// In:  centres            centres_len of them, 3 numbers each; any finite numbers, taken modulo L. See fixpair_refine_centres_f64
 ///      overdensities      overdensities_len values of Delta, 2 and more; see fixpair_overdensity
 ///      position           all particles that may lie in the spheres; with several processes: with ghosts as deep as the largest radius
 ///      box_size           L
@@ -111,7 +111,7 @@ pub unsafe extern "C" fn fixpair_spheres_scratch_f32(
 pub unsafe extern "C" fn fixpair_spheres_f64(
     spheres: *mut Sphere,
     spheres_len: usize,
-    centres: *const [f64; 3],
+    centres: *const f64,
     centres_len: usize,
     overdensities: *const f64,
     overdensities_len: usize,
@@ -151,7 +151,7 @@ pub unsafe extern "C" fn fixpair_spheres_f64(
 pub unsafe extern "C" fn fixpair_spheres_f32(
     spheres: *mut Sphere,
     spheres_len: usize,
-    centres: *const [f64; 3],
+    centres: *const f64,
     centres_len: usize,
     overdensities: *const f64,
     overdensities_len: usize,
@@ -186,7 +186,7 @@ pub unsafe extern "C" fn fixpair_spheres_f32(
 unsafe fn grow<P: Places>(
     spheres: *mut Sphere,
     spheres_len: usize,
-    centres: *const [f64; 3],
+    centres: *const f64,
     centres_len: usize,
     overdensities: *const f64,
     overdensities_len: usize,
@@ -200,7 +200,7 @@ unsafe fn grow<P: Places>(
     // SAFETY: the caller's promise.
     unsafe {
         let spheres = border.write(spheres, spheres_len)?;
-        let centres = border.read(centres, centres_len)?;
+        let centres = border.read(centres.cast::<[f64; 3]>(), centres_len)?;
         let overdensities = border.read(overdensities, overdensities_len)?;
         let position = positions(&mut border, position)?;
         let scratch = border.scratch(scratch, scratch_len)?;
@@ -214,7 +214,7 @@ unsafe fn grow<P: Places>(
 /// Each centre moves to the centre of mass of the particles within its radius, then the radius shrinks by a factor, until a sphere would hold
 /// fewer than n_min particles.
 ///
-/// In/out: centres   centres_len of them; any finite numbers; on return in [0, L). One whose first sphere holds fewer than n_min particles stays
+/// In/out: centres   centres_len of them, 3 numbers each; any finite numbers; on return in [0, L). One whose first sphere holds fewer than n_min particles stays
 /// In:  radii        centres_len radii of first spheres, from 0 to L/4; about twice the radius of a fixpair_halo
 ///      position     all particles that may lie in the spheres
 ///      box_size     L
@@ -230,7 +230,7 @@ unsafe fn grow<P: Places>(
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_refine_centres_f64(
-    centres: *mut [f64; 3],
+    centres: *mut f64,
     centres_len: usize,
     radii: *const f64,
     position: *const fixpair_positions_f64,
@@ -254,7 +254,7 @@ pub unsafe extern "C" fn fixpair_refine_centres_f64(
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fixpair_refine_centres_f32(
-    centres: *mut [f64; 3],
+    centres: *mut f64,
     centres_len: usize,
     radii: *const f64,
     position: *const fixpair_positions_f32,
@@ -273,7 +273,7 @@ pub unsafe extern "C" fn fixpair_refine_centres_f32(
 }
 
 unsafe fn refine<P: Places>(
-    centres: *mut [f64; 3],
+    centres: *mut f64,
     centres_len: usize,
     radii: *const f64,
     position: *const P,
@@ -286,7 +286,7 @@ unsafe fn refine<P: Places>(
     let mut border = Border::new();
     // SAFETY: the caller's promise.
     unsafe {
-        let centres = border.write(centres, centres_len)?;
+        let centres = border.write(centres.cast::<[f64; 3]>(), centres_len)?;
         let radii = border.read(radii, centres_len)?;
         let position = positions(&mut border, position)?;
         let scratch = border.scratch(scratch, scratch_len)?;

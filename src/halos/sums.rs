@@ -20,7 +20,7 @@ pub struct HaloSums {
     pub label: u64,
     /// Particles summed.
     pub members: u64,
-    /// Place of one of them, at home.
+    /// Position of one of them, in [0, L).
     pub reference: [f64; 3],
     /// Its velocity.
     pub reference_velocity: [f64; 3],
@@ -97,7 +97,7 @@ impl HaloSums {
         self.members += other.members;
     }
 
-    /// Finite, of one particle or more, with references at home?
+    /// Finite, of one particle or more, with its reference in the box?
     pub(super) fn is_sound(&self, box_size: f64) -> bool {
         let triples = [
             self.reference_velocity,
