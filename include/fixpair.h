@@ -752,7 +752,7 @@ typedef struct fixpair_halo_sums {
   uint64_t label;
   /* Particles summed. */
   uint64_t members;
-  /* Place of one of them, at home. */
+  /* Position of one of them, in [0, L). */
   double reference[3];
   /* Its velocity. */
   double reference_velocity[3];
@@ -2403,7 +2403,7 @@ fixpair_status_t fixpair_fof_labels_scratch_f32(struct fixpair_layout *scratch, 
  * receive ghosts: copies, with ids, of all particles of other processes within l of the region, periodically;
  *     put them behind the own ones;
  * fixpair_fof_labels_f32(labels, own + ghosts, &position, ids, own + ghosts, box_size, l_of_all, ...);
- * for each ghost, get from its owner the label that it has there: pairs[g] = {label here, label there};
+ * for each ghost, get from its owner the label that it has there: pairs[2 g] = label here, pairs[2 g + 1] = label there;
  * gather the pairs of all processes on all; equal ones may be dropped;
  * fixpair_fof_merge(map, map_len, &entries, pairs, pairs_len);
  * fixpair_halo_sums_f32(sums, ..., labels, own, ..., n_min, map, entries, ...);   only own particles
@@ -2451,31 +2451,31 @@ fixpair_status_t fixpair_fof_labels_f32(uint64_t *labels,
 /*
  * From pairs of labels that belong to one group to the final label of each: the smallest of all that pairs connect.
  *
- * Out: map      entries {label, final label}, labels increasing; those that occur in no pair stay as they are
+ * Out: map      entries, one after the other: label, final label; labels increase. Labels that occur in no pair stay as they are
  *      entries  how many: at most 2 pairs_len
- * In:  map_len  2 pairs_len or more
- *      pairs    pairs_len pairs of labels, in any order; see fixpair_fof_labels_f64
+ * In:  map_len  entries that fit, 2 numbers each: 2 pairs_len or more
+ *      pairs    pairs_len pairs of labels, 2 numbers each, in any order; see fixpair_fof_labels_f64
  * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW
  * Cost: a sort of 2 pairs_len entries
  */
-fixpair_status_t fixpair_fof_merge(uint64_t (*map)[2],
+fixpair_status_t fixpair_fof_merge(uint64_t *map,
                                    size_t map_len,
                                    size_t *entries,
-                                   const uint64_t (*pairs)[2],
+                                   const uint64_t *pairs,
                                    size_t pairs_len);
 
 /*
  * Replaces labels by their final ones, where the map holds them.
  *
  * In/out: labels  len labels
- * In:     map     map_len entries of fixpair_fof_merge
+ * In:     map     map_len entries of fixpair_fof_merge, 2 numbers each
  *         exec    or NULL
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_TABLE unless the labels of the map increase,
  *          FIXPAIR_ERROR_HOOK, after which some labels are replaced
  */
 fixpair_status_t fixpair_fof_relabel(uint64_t *labels,
                                      size_t len,
-                                     const uint64_t (*map)[2],
+                                     const uint64_t *map,
                                      size_t map_len,
                                      const struct fixpair_exec *exec);
 
@@ -2568,7 +2568,7 @@ fixpair_status_t fixpair_halos_f32(struct fixpair_halo *halos,
  *      velocity  of len particles, or NULL
  *      box_size  L
  *      n_min     1 or more
- *      map       map_len entries of fixpair_fof_merge; or NULL and 0 for a whole box
+ *      map       map_len entries of fixpair_fof_merge, 2 numbers each; or NULL and 0 for a whole box
  *      scratch   scratch_len bytes, see fixpair_halos_scratch
  *      exec      or NULL
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH, _TABLE for the map; FIXPAIR_ERROR_LENGTH, also if
@@ -2584,7 +2584,7 @@ fixpair_status_t fixpair_halo_sums_f64(struct fixpair_halo_sums *sums,
                                        const struct fixpair_positions_f64 *velocity,
                                        double box_size,
                                        uint64_t n_min,
-                                       const uint64_t (*map)[2],
+                                       const uint64_t *map,
                                        size_t map_len,
                                        void *scratch,
                                        size_t scratch_len,
@@ -2600,7 +2600,7 @@ fixpair_status_t fixpair_halo_sums_f32(struct fixpair_halo_sums *sums,
                                        const struct fixpair_positions_f32 *velocity,
                                        double box_size,
                                        uint64_t n_min,
-                                       const uint64_t (*map)[2],
+                                       const uint64_t *map,
                                        size_t map_len,
                                        void *scratch,
                                        size_t scratch_len,
@@ -2686,7 +2686,7 @@ fixpair_status_t fixpair_spheres_scratch_f32(struct fixpair_layout *scratch, siz
  * M = (4 pi/3) R^3 Delta rho_m holds exactly. Members, mass and radius are 0 if fewer than n_min particles lie within R_n_min: not that dense.
  *
  * Out: spheres            for each centre, each overdensity; spheres_len = centres_len x overdensities_len
- * In:  centres            centres_len of them; any finite numbers, taken modulo L. See fixpair_refine_centres_f64
+ * In:  centres            centres_len of them, 3 numbers each; any finite numbers, taken modulo L. See fixpair_refine_centres_f64
  *      overdensities      overdensities_len values of Delta, 2 and more; see fixpair_overdensity
  *      position           all particles that may lie in the spheres; with several processes: with ghosts as deep as the largest radius
  *      box_size           L
@@ -2701,7 +2701,7 @@ fixpair_status_t fixpair_spheres_scratch_f32(struct fixpair_layout *scratch, siz
  */
 fixpair_status_t fixpair_spheres_f64(struct fixpair_sphere *spheres,
                                      size_t spheres_len,
-                                     const double (*centres)[3],
+                                     const double *centres,
                                      size_t centres_len,
                                      const double *overdensities,
                                      size_t overdensities_len,
@@ -2717,7 +2717,7 @@ fixpair_status_t fixpair_spheres_f64(struct fixpair_sphere *spheres,
 /* fixpair_spheres_f64 in single precision. */
 fixpair_status_t fixpair_spheres_f32(struct fixpair_sphere *spheres,
                                      size_t spheres_len,
-                                     const double (*centres)[3],
+                                     const double *centres,
                                      size_t centres_len,
                                      const double *overdensities,
                                      size_t overdensities_len,
@@ -2736,7 +2736,7 @@ fixpair_status_t fixpair_spheres_f32(struct fixpair_sphere *spheres,
  * Each centre moves to the centre of mass of the particles within its radius, then the radius shrinks by a factor, until a sphere would hold
  * fewer than n_min particles.
  *
- * In/out: centres   centres_len of them; any finite numbers; on return in [0, L). One whose first sphere holds fewer than n_min particles stays
+ * In/out: centres   centres_len of them, 3 numbers each; any finite numbers; on return in [0, L). One whose first sphere holds fewer than n_min particles stays
  * In:  radii        centres_len radii of first spheres, from 0 to L/4; about twice the radius of a fixpair_halo
  *      position     all particles that may lie in the spheres
  *      box_size     L
@@ -2748,7 +2748,7 @@ fixpair_status_t fixpair_spheres_f32(struct fixpair_sphere *spheres,
  *          are moved
  * Cost: a sort of the particles, then log(last radius/first)/log(factor) sums over those in each sphere
  */
-fixpair_status_t fixpair_refine_centres_f64(double (*centres)[3],
+fixpair_status_t fixpair_refine_centres_f64(double *centres,
                                             size_t centres_len,
                                             const double *radii,
                                             const struct fixpair_positions_f64 *position,
@@ -2760,7 +2760,7 @@ fixpair_status_t fixpair_refine_centres_f64(double (*centres)[3],
                                             const struct fixpair_exec *exec);
 
 /* fixpair_refine_centres_f64 in single precision. */
-fixpair_status_t fixpair_refine_centres_f32(double (*centres)[3],
+fixpair_status_t fixpair_refine_centres_f32(double *centres,
                                             size_t centres_len,
                                             const double *radii,
                                             const struct fixpair_positions_f32 *position,
