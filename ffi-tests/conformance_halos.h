@@ -2,11 +2,14 @@
  * The part of conformance.c about groups, halos and spherical overdensities, in one precision.
  */
 
-/* Component `axis` of particle i: ten clumps, one of them on a corner of the box, and a background. */
+/* Component `axis` of particle i: ten clumps, one of them on a corner of the box, a thread through the box, and a background. */
 static REAL X(place)(size_t i, size_t axis) {
     size_t clump = i % CLUMPS;
     double centre = clump == 0 ? 0.0 : BOX * (noise(7 * clump + axis) + 1.0) / 2.0;
     double around = centre + 4.0 * noise(3 * i + axis + 9000);
+    if (i >= CLUMPED && i < THREADED) {
+        return (REAL)(axis == 0 ? BOX * (double)(i - CLUMPED) / 50.0 : axis == 1 ? 77.0 : 33.0);
+    }
     return (REAL)(i < CLUMPED ? around : BOX * (noise(3 * i + axis) + 1.0) / 2.0);
 }
 

@@ -72,7 +72,7 @@ static void steps_in_time(void) {
     check_case("steps", hash_bytes(HASH_START, steps, sizeof steps));
 }
 
-enum { CROWD = 400, CLUMPED = 300, CLUMPS = 10, LEAST_MEMBERS = 10, DENSITIES = 3 };
+enum { CROWD = 400, CLUMPED = 300, THREADED = 350, CLUMPS = 10, LEAST_MEMBERS = 10, DENSITIES = 3 };
 
 static void numbers_of_halos(void) {
     fixpair_cosmology cosmology;

@@ -142,7 +142,7 @@ static void X(refuse_kicks)(void) {
     t.a.d[0] = BOX;
     t.a.d[2] = t.a.d[3] = t.a.d[4] = t.a.d[5] = 1.0;
     refuse_pointers_and_lengths();
-    ACCEPTED((t.a.d[4] = t.a.d[5] = 0.0, moved->length = position->length = 0));
+    ACCEPTED((t.a.d[4] = t.a.d[5] = 0.0, t.a.p[6] = t.a.p[7] = NULL, moved->length = position->length = 0));
     X(refuse_positions)(position, moved->x);
     REFUSED(FIXPAIR_ERROR_LENGTH, position->length--);
     REFUSED(FIXPAIR_ERROR_LENGTH, moved->length--);
@@ -171,7 +171,7 @@ static void X(refuse_kicks)(void) {
     t.a.d[0] = BOX;
     t.a.d[1] = t.a.d[2] = t.a.d[3] = 1.0;
     refuse_pointers_and_lengths();
-    ACCEPTED((t.a.d[2] = t.a.d[3] = 0.0, moved->length = position->length = 0));
+    ACCEPTED((t.a.d[2] = t.a.d[3] = 0.0, t.a.p[2] = t.a.p[3] = NULL, moved->length = position->length = 0));
     x = (REAL *)(uintptr_t)position->x;
     X(refuse_views)(position, moved->x);
     X(refuse_displacements)(2, 2, moved->x);

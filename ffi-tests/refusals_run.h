@@ -161,7 +161,8 @@ static void X(refuse_runs)(void) {
     ACCEPTED(t.a.p[12] = NULL);
     ACCEPTED((gravity->stepper = FIXPAIR_STEPPER_FASTPM, t.a.p[4] = NULL));
     ACCEPTED((displacements->second.length = 0, displacements->second.x = NULL));
-    ACCEPTED(t.a.n[0] = 1);
+    ACCEPTED((t.a.n[0] = 1, t.a.p[6] = NULL));
+    REFUSED(FIXPAIR_ERROR_RANGE, t.a.n[0] = 1);
     X(refuse_components)(position, velocity);
     X(refuse_gravity)(gravity);
     X(refuse_times)(steps, epoch);

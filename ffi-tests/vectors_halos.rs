@@ -19,6 +19,7 @@ const PARTICLES: usize = 400;
 /// The first of them lie in clumps.
 const CLUMPED: usize = 300;
 const CLUMPS: usize = 10;
+const THREADED: usize = 350;
 
 const MASS: f64 = 1e10;
 const LEAST_MEMBERS: u64 = 10;
@@ -44,8 +45,11 @@ fn sizes(hash: Hash, layout: Layout) -> Hash {
     hash.integers(&[layout.size as u64, layout.align as u64])
 }
 
-/// Component `axis` of particle `i`: ten clumps, one of them on a corner of the box, and a background.
+/// Component `axis` of particle `i`: ten clumps, one of them on a corner of the box, a thread through the box, and a background.
 fn place(i: usize, axis: usize) -> f64 {
+    if (CLUMPED..THREADED).contains(&i) {
+        return [BOX * (i - CLUMPED) as f64 / 50.0, 77.0, 33.0][axis];
+    }
     let clump = i % CLUMPS;
     let centre = if clump == 0 { 0.0 } else { BOX * (noise(7 * clump + axis) + 1.0) / 2.0 };
     let around = centre + 4.0 * noise(3 * i + axis + 9000);

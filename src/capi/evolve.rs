@@ -7,7 +7,7 @@ use super::cosmology::fixpair_cosmology;
 use super::exec::{HostExec, fixpair_exec};
 use super::factors::{FIXPAIR_COLA_EXPONENT, FIXPAIR_STEPPER_FASTPM, stepper};
 use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
-use super::force::fixpair_force_law;
+use super::force::{FIXPAIR_DIFFERENCE_FOUR_POINT, fixpair_force_law};
 use super::particles::{Triple, components, components_of, fixpair_components_f32, fixpair_components_f64};
 use super::pm::{FIXPAIR_WINDOW_CIC, Places, fixpair_positions_f32, fixpair_positions_f64, positions_of};
 use super::status::{code, fixpair_status_t};
@@ -62,7 +62,8 @@ impl fixpair_gravity {
     }
 }
 
-/// Fills the gravity: the GOLIAT cosmology, a box of 1000 Mpc/h, km/s, FastPM, cloud in cell, and the force law of fixpair_force_law_init.
+/// Fills the gravity: the GOLIAT cosmology, a box of 1000 Mpc/h, km/s, FastPM, cloud in cell, and the force law of fixpair_force_law_init but for a gradient of
+/// four points, which does not see the lattice of the particles: FastPM's own choice.
 ///
 /// Out: gravity
 /// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT
@@ -78,7 +79,10 @@ pub unsafe extern "C" fn fixpair_gravity_init(gravity: *mut fixpair_gravity) -> 
             cosmology: fixpair_cosmology::new(Cosmology::goliat()),
             box_size: 1000.0,
             hubble: 100.0,
-            law: fixpair_force_law::initial(),
+            law: fixpair_force_law {
+                gradient: FIXPAIR_DIFFERENCE_FOUR_POINT,
+                ..fixpair_force_law::initial()
+            },
             cola_exponent: FIXPAIR_COLA_EXPONENT,
             stepper: FIXPAIR_STEPPER_FASTPM,
             window: FIXPAIR_WINDOW_CIC,

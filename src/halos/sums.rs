@@ -165,8 +165,10 @@ pub fn halo_sums<T: Real>(
     let sums = sums.get_mut(..groups).ok_or(Error::Length)?;
     check_finite(position, exec)?;
     velocity.map_or(Ok(()), |velocity| check_finite(velocity, exec))?;
-    members
-        .write(sums, exec, &|label, records| HaloSums::of(label, records, position, velocity, box_size))?;
+    members.write(sums, exec, &|label, records| {
+        let label = final_label(map, label).unwrap_or(label);
+        HaloSums::of(label, records, position, velocity, box_size)
+    })?;
     sums.sort_unstable_by_key(|sums| sums.label);
     Ok(groups)
 }

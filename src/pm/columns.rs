@@ -81,11 +81,6 @@ impl<'a, T: Real> Positions<'a, T> {
         self.start.map(|start| unsafe { start.add(i * self.stride).read() })
     }
 
-    /// x0 y0 z0 x1 y1 z1 ... ?
-    pub(super) fn are_triples(&self) -> bool {
-        are_triples(self.start, self.stride)
-    }
-
     /// Copies the coordinates of `count` consecutive particles to `to[axis][at ..]`.
     ///
     /// # Safety
@@ -114,34 +109,6 @@ impl<'a, T: Real> From<&'a Components<'_, T>> for Positions<'a, T> {
             life: PhantomData,
         }
     }
-}
-
-/// A whole block of triples as it lies in memory: component a of particle i is number 3 i + a. For kernels that do the same to all components.
-///
-/// # Safety
-/// The particles are [`triples`](Positions::are_triples), `first + N` is at most [`Positions::len`], and nobody writes them now.
-#[inline(always)]
-pub(super) unsafe fn load_flat<T: Real, const N: usize>(
-    from: &Positions<'_, T>,
-    first: usize,
-    to: &mut [[T; N]; 3],
-) {
-    // SAFETY: 3 N numbers without a gap (caller).
-    *to = unsafe { from.start[0].add(3 * first).cast::<[[T; N]; 3]>().read() };
-}
-
-/// The other way.
-///
-/// # Safety
-/// As [`load_flat`], and no other thread touches the particles now.
-#[inline(always)]
-pub(super) unsafe fn store_flat<T: Real, const N: usize>(
-    to: &Components<'_, T>,
-    first: usize,
-    from: &[[T; N]; 3],
-) {
-    // SAFETY: as above.
-    unsafe { to.parts().0[0].add(3 * first).cast::<[[T; N]; 3]>().write(*from) }
 }
 
 /// Copies the components of `count` consecutive particles to the front of `to`.

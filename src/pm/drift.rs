@@ -5,7 +5,7 @@
 
 use core::sync::atomic::{AtomicBool, Ordering};
 
-use super::columns::{Positions, load_components, load_flat, store_components, store_flat};
+use super::columns::{Positions, load_components, store_components};
 use super::frame::BLOCK;
 use super::kick::{Lpt, Terms};
 use super::sort::CHUNK;
@@ -69,8 +69,7 @@ pub(super) fn drift_with<T: Real>(
     }
     let lpt = Terms::new(lpt, [drift.first, drift.second], particles)?;
     let position = &*position;
-    let flat = [Positions::from(position), *velocity].iter().all(Positions::are_triples) && lpt.are_triples();
-    let moved = Moved { position, velocity, box_size, edge, factor: drift.velocity, lpt, flat };
+    let moved = Moved { position, velocity, box_size, edge, factor: drift.velocity, lpt };
     let lost = AtomicBool::new(false);
     exec.parallel_for(particles.div_ceil(CHUNK), &|chunk| {
         let end = particles.min((chunk + 1) * CHUNK);
@@ -100,8 +99,6 @@ struct Moved<'a, 'b, T> {
     edge: T,
     factor: f64,
     lpt: Terms<'a, T>,
-    /// All are triples.
-    flat: bool,
 }
 
 impl<T: Real> Moved<'_, '_, T> {
@@ -112,44 +109,19 @@ impl<T: Real> Moved<'_, '_, T> {
     #[inline(always)]
     unsafe fn block(&self, first: usize, count: usize) -> bool {
         let (mut x, mut u) = ([[T::ZERO; BLOCK]; 3], [[T::ZERO; BLOCK]; 3]);
-        // SAFETY: as the caller says; velocities and displacements are as many as positions, and triples like them where `flat` says so.
+        // SAFETY: as the caller says; velocities are as many as positions.
         unsafe {
-            if self.flat && count == BLOCK {
-                load_flat(&Positions::from(self.position), first, &mut x);
-                load_flat(self.velocity, first, &mut u);
-                let sound = self.places::<true>(first, BLOCK, &mut x, &u);
-                store_flat(self.position, first, &x);
-                sound
-            } else {
-                load_components(self.position, first, count, &mut x);
-                self.velocity.load_all(first, count, 0, &mut u);
-                let sound = self.places::<false>(first, count, &mut x, &u);
-                store_components(self.position, first, count, &x);
-                sound
-            }
+            load_components(self.position, first, count, &mut x);
+            self.velocity.load_all(first, count, 0, &mut u);
         }
-    }
-
-    /// New places of a block; returns whether all of them are in the box.
-    ///
-    /// # Safety
-    /// As `block`.
-    #[inline(always)]
-    unsafe fn places<const FLAT: bool>(
-        &self,
-        first: usize,
-        count: usize,
-        x: &mut [[T; BLOCK]; 3],
-        u: &[[T; BLOCK]; 3],
-    ) -> bool {
         let mut sum = [[0.0; BLOCK]; 3];
         for axis in 0..3 {
             for i in 0..BLOCK {
                 sum[axis][i] = x[axis][i].to_f64() + self.factor * u[axis][i].to_f64();
             }
         }
-        // SAFETY: as the caller says.
-        unsafe { self.lpt.add::<FLAT>(first, count, &mut sum) };
+        // SAFETY: displacements are as many too.
+        unsafe { self.lpt.add(first, count, &mut sum) };
         let mut lost = 0;
         for axis in 0..3 {
             let (place, sum) = (&mut x[axis], &mut sum[axis]);
@@ -170,6 +142,8 @@ impl<T: Real> Moved<'_, '_, T> {
                 lost += u64::from(!found);
             }
         }
+        // SAFETY: as the caller says.
+        unsafe { store_components(self.position, first, count, &x) };
         lost == 0
     }
 }

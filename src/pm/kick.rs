@@ -8,7 +8,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use super::columns::{Positions, load_components, load_flat, store_components, store_flat};
+use super::columns::{Positions, load_components, store_components};
 use super::deposit::deposit_scratch;
 use super::frame::{Assignment, BLOCK, Frame, NOT_FINITE};
 use super::gather::Meshes;
@@ -62,7 +62,8 @@ pub fn kick_scratch<T: Real>(region: &Region, particles: usize, window: Window) 
 /// As [`super::deposit::deposit`]; `NotFinite` also for a coefficient, `Null` for displacements that a coefficient asks for and that are not
 /// there. After `NotFinite` for a position, velocity, force or displacement and after `Outside` some velocities are kicked, some not.
 ///
-/// The same bits for any number of threads.
+/// The same bits for any number of threads. Cost on one core, `f32`, order 2: 18 ns a particle if neighbours in memory are neighbours in space,
+/// 31 ns for a lattice displaced as far as clustering does, 50 ns in random order; order 3: 34, 51 and 80 ns.
 pub fn kick<T: Real>(
     velocity: &mut Components<'_, T>,
     position: &Positions<'_, T>,
@@ -103,8 +104,7 @@ pub(super) fn kick_with<T: Real>(
     let mut arena = Arena::new(scratch, sort::layout::<T>(particles, tiling.len())?)?;
     let mut sorter = Sorter::new(&mut arena, particles, tiling.len())?;
     let velocity = &*velocity;
-    let flat = Positions::from(velocity).are_triples() && lpt.are_triples();
-    let target = Target { velocity, kick, lpt, flat, wrong: AtomicU32::new(0) };
+    let target = Target { velocity, kick, lpt, wrong: AtomicU32::new(0) };
     for first in (0..particles).step_by(BATCH) {
         let count = BATCH.min(particles - first);
         let changes = sorter.count(position, first, count, &frame, &tiling, simd, exec)?;
@@ -142,8 +142,6 @@ struct Target<'a, 'b, T> {
     velocity: &'a Components<'b, T>,
     kick: &'a Kick,
     lpt: Terms<'a, T>,
-    /// Velocities and displacements are all triples.
-    flat: bool,
     /// What is wrong with any of them.
     wrong: AtomicU32,
 }
@@ -155,61 +153,30 @@ impl<T: Real> Target<'_, '_, T> {
     /// The particles exist, `count` is at most [`BLOCK`], and no other thread touches their velocities now.
     #[inline(always)]
     unsafe fn kick(&self, first: usize, count: usize, forces: &[[T; BLOCK]; 3]) {
-        let mut u = [[T::ZERO; BLOCK]; 3];
-        // SAFETY: as the caller says; displacements are as many as particles, and triples where the velocities are and `flat` says so.
-        let sound = unsafe {
-            if self.flat && count == BLOCK {
-                let mut triples = [[T::ZERO; BLOCK]; 3];
-                for i in 0..BLOCK {
-                    for axis in 0..3 {
-                        triples.as_flattened_mut()[3 * i + axis] = forces[axis][i];
-                    }
-                }
-                load_flat(&Positions::from(self.velocity), first, &mut u);
-                let sound = self.sum::<true>(first, BLOCK, &triples, &mut u);
-                store_flat(self.velocity, first, &u);
-                sound
-            } else {
-                load_components(self.velocity, first, count, &mut u);
-                let sound = self.sum::<false>(first, count, forces, &mut u);
-                store_components(self.velocity, first, count, &u);
-                sound
-            }
-        };
-        if !sound {
-            self.wrong.fetch_or(NOT_FINITE, Ordering::Relaxed);
-        }
-    }
-
-    /// New velocities of a block; returns whether all of them are finite.
-    ///
-    /// # Safety
-    /// As `kick`.
-    #[inline(always)]
-    unsafe fn sum<const FLAT: bool>(
-        &self,
-        first: usize,
-        count: usize,
-        forces: &[[T; BLOCK]; 3],
-        u: &mut [[T; BLOCK]; 3],
-    ) -> bool {
         let Kick { keep, force, .. } = *self.kick;
+        let mut u = [[T::ZERO; BLOCK]; 3];
+        // SAFETY: as the caller says.
+        unsafe { load_components(self.velocity, first, count, &mut u) };
         let mut sum = [[0.0; BLOCK]; 3];
         for axis in 0..3 {
             for i in 0..BLOCK {
                 sum[axis][i] = keep * u[axis][i].to_f64() + force * forces[axis][i].to_f64();
             }
         }
-        // SAFETY: as the caller says.
-        unsafe { self.lpt.add::<FLAT>(first, count, &mut sum) };
+        // SAFETY: there are as many displacements as particles.
+        unsafe { self.lpt.add(first, count, &mut sum) };
         let mut lost = 0;
         for axis in 0..3 {
             for i in 0..BLOCK {
                 u[axis][i] = T::from_f64(sum[axis][i]);
-                lost |= u32::from(!u[axis][i].is_finite() & (FLAT | (i < count)));
+                lost |= u32::from(!u[axis][i].is_finite() & (i < count));
             }
         }
-        lost == 0
+        // SAFETY: as the caller says.
+        unsafe { store_components(self.velocity, first, count, &u) };
+        if lost != 0 {
+            self.wrong.fetch_or(NOT_FINITE, Ordering::Relaxed);
+        }
     }
 }
 
@@ -237,32 +204,16 @@ impl<'a, T: Real> Terms<'a, T> {
         Ok(Self { terms })
     }
 
-    /// Are all of them x0 y0 z0 x1 y1 z1 ... ?
-    pub(super) fn are_triples(&self) -> bool {
-        self.terms.iter().flatten().all(|(displacement, _)| displacement.are_triples())
-    }
-
-    /// Adds coefficient times displacement to the sums of a block, by component or, if `FLAT`, as triples lie.
+    /// Adds coefficient times displacement to the sums of a block.
     ///
     /// # Safety
-    /// `first + count` is at most the number of particles, and `count` at most [`BLOCK`]; if `FLAT`, it is [`BLOCK`] and all are triples.
+    /// `first + count` is at most the number of particles, and `count` at most [`BLOCK`].
     #[inline(always)]
-    pub(super) unsafe fn add<const FLAT: bool>(
-        &self,
-        first: usize,
-        count: usize,
-        sum: &mut [[f64; BLOCK]; 3],
-    ) {
+    pub(super) unsafe fn add(&self, first: usize, count: usize, sum: &mut [[f64; BLOCK]; 3]) {
         let mut psi = [[T::ZERO; BLOCK]; 3];
         for (displacement, coefficient) in self.terms.iter().flatten() {
             // SAFETY: as the caller says.
-            unsafe {
-                if FLAT {
-                    load_flat(displacement, first, &mut psi);
-                } else {
-                    displacement.load_all(first, count, 0, &mut psi);
-                }
-            }
+            unsafe { displacement.load_all(first, count, 0, &mut psi) };
             for axis in 0..3 {
                 for i in 0..BLOCK {
                     sum[axis][i] += coefficient * psi[axis][i].to_f64();

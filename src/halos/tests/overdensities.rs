@@ -75,9 +75,9 @@ fn a_singular_isothermal_sphere_has_the_radius_of_its_closed_form() {
         let sphere = grown(&places, &[centre], &[delta], &density, &Serial).unwrap()[0];
         // r/step = (4 pi/3) r^3 delta N.
         let expected = (3.0 / (4.0 * std::f64::consts::PI * delta * total as f64 * step)).sqrt();
-        // Counts are whole: off by one particle, and the cube of that in radius.
-        assert!((sphere.members as f64 - expected / step).abs() <= 1.0, "{sphere:?}, {expected}");
-        assert!((sphere.radius - expected).abs() <= step, "{sphere:?}, {expected}");
+        // Counts are whole: k <= c k^(1/3) < k + 1 holds first up to 3/2 below the root, that is half a step of radius.
+        assert!((sphere.members as f64 - expected / step).abs() <= 1.5, "{sphere:?}, {expected}");
+        assert!((sphere.radius - expected).abs() <= 0.51 * step, "{sphere:?}, {expected}");
         let mean = sphere.members as f64 / (4.0 / 3.0 * std::f64::consts::PI * sphere.radius.powi(3));
         assert!((mean / (delta * total as f64) - 1.0).abs() < 1e-14, "the mean density is exact to rounding");
     }
@@ -115,20 +115,26 @@ fn refined<T: Real>(
 
 #[test]
 fn shrinking_spheres_find_the_peak_beside_a_companion() {
-    // A dense core on the edge of the box, and a looser companion of half its mass that draws the centre of mass away.
+    // An isothermal halo on the edge of the box, and a looser companion of half its mass that draws the centre of mass away.
     let mut random = Random(34);
-    let mut blob = |members: usize, centre: [f64; 3], size: f64| -> Vec<[f64; 3]> {
-        (0..members).map(|_| centre.map(|x| home(x + size * random.normal(), 1.0))).collect()
+    let mut halo = |members: usize, centre: [f64; 3], size: f64| -> Vec<[f64; 3]> {
+        let mut place = || {
+            let direction = [random.normal(), random.normal(), random.normal()];
+            let norm = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+            let r = size * random.unit();
+            [0, 1, 2].map(|axis| home(centre[axis] + r * direction[axis] / norm, 1.0))
+        };
+        (0..members).map(|_| place()).collect()
     };
     let peak = [0.999, 0.5, 0.001];
-    let mut places = blob(2000, peak, 0.003);
-    places.extend(blob(1000, [0.019, 0.5, 0.001], 0.006));
+    let mut places = halo(2000, peak, 0.01);
+    places.extend(halo(1000, [0.019, 0.5, 0.001], 0.02));
     let away = [0.005, 0.5, 0.001];
     let centre = refined(&places, &[away, [0.4; 3]], 0.04, &Serial).unwrap();
-    // The mean of the 50 particles of the last sphere is uncertain by its radius, about 0.3 sizes, over sqrt(50).
+    // The last sphere has 50 of 2000 particles, a radius of 0.025 sizes: its centre is nearer to the peak than that.
     for axis in 0..3 {
         let apart = (centre[0][axis] - peak[axis]).abs();
-        assert!(apart.min(1.0 - apart) < 0.2 * 0.003, "{centre:?}");
+        assert!(apart.min(1.0 - apart) < 0.025 * 0.01, "{centre:?}");
     }
     assert_eq!(centre[1], [0.4; 3], "where there is nothing a centre stays");
 }
