@@ -204,11 +204,13 @@ static void universes(double *data, void *scratch, size_t scratch_len, const fix
 }
 
 #include "fuzz_estimate.h"
+#include "fuzz_gravity.h"
 
 int main(void) {
     double *data = (double *)take((2 * LENGTH + 2 * VALUES) * sizeof *data);
     float *single = (float *)take(LENGTH * sizeof *single);
     double *memory = (double *)take(BYTES);
+    void *space = take(SPACE);
     int64_t *sums = (int64_t *)take(WORDS * sizeof *sums);
     fixpair_conditions conditions;
     fixpair_fft_f64 fft;
@@ -229,19 +231,24 @@ int main(void) {
         meshes(data, single);
         clouds(data, single, memory);
         estimates(data, single, memory, sums);
+        forces(data, single, memory);
+        groups(data, space);
         if (round % 8 == 0) {
             universes(data, scratch, layout.size, &fft);
             bispectra(data, memory, sums, &fft);
+            runs(data, memory, &fft);
         }
         memset(data, 0, (2 * LENGTH + 2 * VALUES) * sizeof *data);
         CHECK_CANARIES(data);
         CHECK_CANARIES(single);
         CHECK_CANARIES(memory);
+        CHECK_CANARIES(space);
         CHECK_CANARIES(sums);
     }
     give_back(data);
     give_back(single);
     give_back(memory);
+    give_back(space);
     give_back(sums);
     give_back(tables);
     give_back(workspace);

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <cstddef>
+#include <functional>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -45,6 +46,12 @@ struct Names;
         static constexpr auto bispectrum_meshes = fixpair_bispectrum_meshes_##suffix;                      \
         static constexpr auto bispectrum_scratch = fixpair_bispectrum_scratch_##suffix;                    \
         static constexpr auto bispectrum = fixpair_bispectrum_##suffix;                                    \
+        typedef fixpair_displacements_##suffix Displacements;                                              \
+        static constexpr auto evolve_scratch = fixpair_evolve_scratch_##suffix;                            \
+        static constexpr auto evolve = fixpair_evolve_##suffix;                                            \
+        static constexpr auto fof_labels_scratch = fixpair_fof_labels_scratch_##suffix;                    \
+        static constexpr auto fof_labels = fixpair_fof_labels_##suffix;                                    \
+        static constexpr auto halos = fixpair_halos_##suffix;                                              \
     };
 FIXPAIR_NAMES(float, f32)
 FIXPAIR_NAMES(double, f64)
@@ -346,6 +353,7 @@ void two_ranks() {
 }
 
 #include "host_estimate.h"
+#include "host_gravity.h"
 
 /* A few refusals, as a host in C++ meets them: as exceptions, with vectors untouched. */
 template <class T>
@@ -381,14 +389,16 @@ int main(int count, char **arguments) {
     read_cases(arguments[1]);
     const fixpair_exec exec = {nullptr, thread_for};
     must(fixpair_exec_self_test(&exec));
-    one_process<float>(&exec);
-    one_process<double>(&exec);
-    estimates<float>(&exec);
-    estimates<double>(&exec);
-    one_process<float>(nullptr);
-    one_process<double>(nullptr);
-    estimates<float>(nullptr);
-    estimates<double>(nullptr);
+    for (const fixpair_exec *run : {&exec, static_cast<const fixpair_exec *>(nullptr)}) {
+        one_process<float>(run);
+        one_process<double>(run);
+        estimates<float>(run);
+        estimates<double>(run);
+        runs<float>(run);
+        runs<double>(run);
+        clumps<float>(run);
+        clumps<double>(run);
+    }
     two_ranks<float>();
     two_ranks<double>();
     refusals<float>();

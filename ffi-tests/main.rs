@@ -9,5 +9,7 @@ mod native;
 mod programs;
 mod vectors;
 mod vectors_estimate;
+mod vectors_gravity;
+mod vectors_halos;
 mod vectors_particles;
 mod vectors_real;

@@ -310,6 +310,7 @@ static void ids(void) {
 }
 
 #include "refusals_bins.h"
+#include "refusals_steps.h"
 
 #define REAL float
 #define X(name) name##_f32
@@ -317,6 +318,9 @@ static void ids(void) {
 #include "refusals_real.h"
 #include "refusals_stages.h"
 #include "refusals_estimate.h"
+#include "refusals_gravity.h"
+#include "refusals_run.h"
+#include "refusals_halos.h"
 #undef REAL
 #undef X
 #undef SUFFIX
@@ -327,6 +331,9 @@ static void ids(void) {
 #include "refusals_real.h"
 #include "refusals_stages.h"
 #include "refusals_estimate.h"
+#include "refusals_gravity.h"
+#include "refusals_run.h"
+#include "refusals_halos.h"
 
 int main(void) {
     t.memory = (unsigned char *)take(ARENA);
@@ -360,6 +367,21 @@ int main(void) {
     refuse_spectra_f64();
     refuse_bispectra_f32();
     refuse_bispectra_f64();
+    factors_of_steps();
+    densities_of_halos();
+    groups_of_processes();
+    refuse_forces_f32();
+    refuse_forces_f64();
+    refuse_kicks_f32();
+    refuse_kicks_f64();
+    refuse_runs_f32();
+    refuse_runs_f64();
+    refuse_groups_f32();
+    refuse_groups_f64();
+    refuse_catalogues_f32();
+    refuse_catalogues_f64();
+    refuse_spheres_f32();
+    refuse_spheres_f64();
     give_back(t.memory);
     give_back(t.pristine);
     give_back(t.before);

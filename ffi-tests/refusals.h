@@ -11,11 +11,13 @@
 
 #include "hosts.h"
 
+enum { ARENA = 1 << 19, REGIONS = 32, POINTERS = 14, LENGTHS = 8 };
+
 /* The arguments of any function of the library. */
 typedef struct {
-    void *p[10];
-    size_t n[8];
-    double d[4];
+    void *p[POINTERS];
+    size_t n[LENGTHS];
+    double d[6];
     int32_t i[2];
     uint64_t u;
 } arguments;
@@ -32,8 +34,6 @@ typedef struct {
     int optional;
     size_t size, align;
 } slot;
-
-enum { ARENA = 1 << 19, REGIONS = 32, POINTERS = 10, LENGTHS = 8 };
 
 static struct {
     const char *name;
@@ -302,6 +302,23 @@ static void refuse_cosmologies(fixpair_cosmology *c) {
     REFUSED(FIXPAIR_ERROR_RANGE, c->t_cmb = 0.0);
     REFUSED(FIXPAIR_ERROR_RANGE, c->omega_de = 3.0);
     REFUSED(FIXPAIR_ERROR_RANGE, c->w0 = 0.5);
+}
+
+static void refuse_laws(fixpair_force_law *law) {
+    REFUSED(FIXPAIR_ERROR_VERSION, law->struct_size = 0);
+    REFUSED(FIXPAIR_ERROR_VERSION, law->struct_size++);
+    REFUSED(FIXPAIR_ERROR_CHOICE, law->laplacian = 3);
+    REFUSED(FIXPAIR_ERROR_CHOICE, law->laplacian = -1);
+    REFUSED(FIXPAIR_ERROR_CHOICE, law->gradient = 3);
+    REFUSED(FIXPAIR_ERROR_CHOICE, law->gradient = INT32_MIN);
+    REFUSED(FIXPAIR_ERROR_CHOICE, law->window = 5);
+    REFUSED(FIXPAIR_ERROR_CHOICE, law->window = -1);
+    REFUSED(FIXPAIR_ERROR_RANGE, (law->window = FIXPAIR_WINDOW_CIC, law->window_power = 0));
+    REFUSED(FIXPAIR_ERROR_RANGE, (law->window = FIXPAIR_WINDOW_CIC, law->window_power = 5));
+    REFUSED(FIXPAIR_ERROR_RANGE, (law->window = FIXPAIR_WINDOW_CIC, law->window_power = -1));
+    REFUSED(FIXPAIR_ERROR_NOT_FINITE, law->split_scale = (double)NAN);
+    REFUSED(FIXPAIR_ERROR_NOT_FINITE, law->split_scale = (double)INFINITY);
+    REFUSED(FIXPAIR_ERROR_RANGE, law->split_scale = -1.0);
 }
 
 /* `linear` has rows of P; its arrays lie in the arena. `out` is some output. */

@@ -45,8 +45,8 @@ class Universe:
 
     def scalars(self):
         library = self.library
-        self.case("status_message", *(library.status_message(-i) for i in range(18)))
-        check(b"unknown" in library.status_message(-18), "an unknown status has a message")
+        self.case("status_message", *(library.status_message(-i) for i in range(19)))
+        check(b"unknown" in library.status_message(-19), "an unknown status has a message")
         self.case("version", library.version())
         block = (ctypes.c_uint32 * 4)()
         library.philox4x32_10(block, (ctypes.c_uint32 * 4)(1, 2, 3, 4), (ctypes.c_uint32 * 2)(5, 6))

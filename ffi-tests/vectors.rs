@@ -17,6 +17,8 @@ use fixpair::status::Error;
 
 use crate::native::folder;
 use crate::vectors_estimate::bin_cases;
+use crate::vectors_gravity::time_cases;
+use crate::vectors_halos::halo_scalars;
 use crate::vectors_particles::ghost_cases;
 use crate::vectors_real::real_cases;
 
@@ -75,6 +77,8 @@ pub(crate) static VECTORS: LazyLock<PathBuf> = LazyLock::new(|| {
     cosmology_cases(&mut cases);
     ghost_cases(&mut cases);
     bin_cases(&mut cases);
+    time_cases(&mut cases);
+    halo_scalars(&mut cases);
     real_cases::<f32>(&mut cases, "f32");
     real_cases::<f64>(&mut cases, "f64");
     let path = folder().join("vectors.txt");

@@ -21,6 +21,8 @@ use crate::vectors::{
     BOX, Cases, FINE, FINER, Hash, N, PADDING, SEED, bricks, default_linear, mode_tables, noise, rows,
 };
 use crate::vectors_estimate::estimate_cases;
+use crate::vectors_gravity::gravity_cases;
+use crate::vectors_halos::halo_cases;
 use crate::vectors_particles::particle_cases;
 
 /// Memory that begins on a cache line.
@@ -85,6 +87,8 @@ pub(crate) fn real_cases<T: Real>(cases: &mut Cases, suffix: &str) {
     stage_cases::<T>(&mut add);
     particle_cases::<T>(&mut add);
     estimate_cases::<T>(&mut add);
+    gravity_cases::<T>(&mut add);
+    halo_cases::<T>(&mut add);
     for (name, order, fine, realisation, local) in conditions() {
         add(name, universe::<T>(order, fine, realisation, local));
     }

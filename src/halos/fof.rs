@@ -20,7 +20,7 @@ use crate::status::{Error, Result};
 /// l = b L/N^(1/3), N the particles of the whole simulation.
 ///
 /// # Errors
-/// `NotFinite`; `Range` unless b and L are positive and there are particles.
+/// `NotFinite`; `Range` unless b and L are positive and there are particles, and for a length that no number holds.
 pub fn linking_length(b: f64, box_size: f64, particles_total: u64) -> Result<f64> {
     if !(b.is_finite() && box_size.is_finite()) {
         return Err(Error::NotFinite);
@@ -28,7 +28,8 @@ pub fn linking_length(b: f64, box_size: f64, particles_total: u64) -> Result<f64
     if !(b > 0.0 && box_size > 0.0 && particles_total > 0) {
         return Err(Error::Range);
     }
-    Ok(b * box_size / libm::cbrt(particles_total as f64))
+    let length = b * box_size / libm::cbrt(particles_total as f64);
+    if length.is_normal() { Ok(length) } else { Err(Error::Range) }
 }
 
 /// Particles whose keys, or cells whose labels, one chunk computes.
