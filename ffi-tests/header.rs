@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 20] = [
+const SECTIONS: [(&str, &str); 23] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -17,6 +17,9 @@ const SECTIONS: [(&str, &str); 20] = [
     ("particles", "Particles"),
     ("pm", "Deposit and read-out"),
     ("cells", "Ghost planes and interlacing"),
+    ("force", "Forces on a mesh"),
+    ("factors", "Steps in time"),
+    ("evolve", "Runs"),
     ("binning", "Bins of spectra and correlation functions"),
     ("power", "Power spectrum"),
     ("correlation", "Correlation function"),
@@ -27,7 +30,13 @@ const SECTIONS: [(&str, &str); 20] = [
 ];
 
 /// Files outside `src/capi` that define structs of the interface.
-const STRUCTS: [&str; 3] = ["src/scratch.rs", "src/cosmology/growth.rs", "src/estimate/binning.rs"];
+const STRUCTS: [&str; 5] = [
+    "src/scratch.rs",
+    "src/cosmology/growth.rs",
+    "src/estimate/binning.rs",
+    "src/pm/factors.rs",
+    "src/pm/evolve.rs",
+];
 
 const PREAMBLE: &str = include_str!("header_preamble.h");
 
@@ -50,7 +59,13 @@ fn generate() -> String {
         ..cbindgen::Config::default()
     };
     config.function.sort_by = Some(cbindgen::SortKey::None);
-    for (rust, c) in [("Layout", "fixpair_layout"), ("Growth", "fixpair_growth"), ("Bin", "fixpair_bin")] {
+    for (rust, c) in [
+        ("Layout", "fixpair_layout"),
+        ("Growth", "fixpair_growth"),
+        ("Bin", "fixpair_bin"),
+        ("StepFactors", "fixpair_step_factors"),
+        ("Epoch", "fixpair_epoch"),
+    ] {
         config.export.rename.insert(rust.into(), c.into());
     }
     config.defines.insert("feature = std".into(), "FIXPAIR_THREADS".into());

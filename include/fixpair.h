@@ -168,6 +168,15 @@
 /* Piecewise cubic spline: p = 4. */
 #define FIXPAIR_WINDOW_PCS 4
 
+/* Spectral: i k and k^2. */
+#define FIXPAIR_DIFFERENCE_EXACT 0
+
+/* The nearest neighbour on either side: i sin(theta)/H and (2/H)^2 sin^2(theta/2), theta = k_a H, H = L/n. Second order. */
+#define FIXPAIR_DIFFERENCE_TWO_POINT 1
+
+/* Two neighbours on either side: i (8 sin theta - sin 2 theta)/(6 H) and (15 - 16 cos theta + cos 2 theta)/(6 H^2). Fourth order. */
+#define FIXPAIR_DIFFERENCE_FOUR_POINT 2
+
 /* Bins of |n| alone. */
 #define FIXPAIR_SECOND_NONE 0
 
@@ -521,6 +530,47 @@ typedef struct fixpair_positions_f32 {
   /* Particles. */
   size_t length;
 } fixpair_positions_f32;
+
+/*
+ * The force on a mesh: what the modes of the density contrast delta are multiplied by.
+ *
+ *    phi_k = - S(k) / (W(k)^power K2(k)) delta_k,    F_k = - i K_a(k) phi_k,    S(k) = exp(-k^2 r_s^2)
+ *
+ * K2 is minus the Laplacian, i K_a the gradient. The laws of known codes (EXACT and so on are FIXPAIR_DIFFERENCE_...):
+ *
+ *    code                                 laplacian   gradient    window, power   split_scale
+ *    fixpair_force_law_init;
+ *    FastPM naive                         EXACT       EXACT       none            0
+ *    FastPM 1_4, its default              EXACT       FOUR_POINT  none            0
+ *    FastPM 3_4                           TWO_POINT   FOUR_POINT  none            0
+ *    FastPM 5_4                           FOUR_POINT  FOUR_POINT  none            0
+ *    FastPM 3_2                           TWO_POINT   EXACT       none            0
+ *    FastPM eastwood                      EXACT       EXACT       CIC, 2          0
+ *    FastPM gadget                        EXACT       FOUR_POINT  CIC, 2          0
+ *    7-point Laplacian, centred
+ *    differences in real space            TWO_POINT   TWO_POINT   none            0
+ *    Gadget-2's Tree-PM, its mesh part    EXACT       FOUR_POINT  CIC, 2          1.25 L/n
+ *
+ * A Tree-PM host adds 1/r^2 [erfc(r/2 r_s) + r/(r_s sqrt pi) exp(-r^2/4 r_s^2)] of Newton's force for near pairs (Springel 2005,
+ * astro-ph/0505010, eq. 19-21).
+ *
+ * Fill it with fixpair_force_law_init, then change what is to be otherwise. Functions refuse with FIXPAIR_ERROR_VERSION, _CHOICE and
+ * _NOT_FINITE what these say, and with FIXPAIR_ERROR_RANGE a power that is not 1 to 4 or a negative split scale.
+ */
+typedef struct fixpair_force_law {
+  /* sizeof(fixpair_force_law). */
+  size_t struct_size;
+  /* K2: FIXPAIR_DIFFERENCE_... */
+  int32_t laplacian;
+  /* K_a: FIXPAIR_DIFFERENCE_... */
+  int32_t gradient;
+  /* W: 0 for none, or FIXPAIR_WINDOW_..., the window of the deposit. */
+  int32_t window;
+  /* 1 undoes the smoothing of the deposit, 2 that of the deposit and the read-out; means nothing without a window. */
+  int32_t window_power;
+  /* r_s, in the unit of the box: 0 for the whole force. A Gaussian filter of dispersion s in x is s/sqrt 2. */
+  double split_scale;
+} fixpair_force_law;
 
 /*
  * What spectra and correlation functions are binned by. n is an integer vector: the mode k = (2 pi/L) n, or the separation x = (L/N) n.
@@ -1642,6 +1692,148 @@ fixpair_status_t fixpair_interlace_f32(float *modes,
                                        const float *shifted,
                                        size_t len,
                                        const struct fixpair_brick *brick,
+                                       const struct fixpair_exec *exec);
+
+/*
+ * Forces on a mesh
+ * ================
+ */
+
+/*
+ * The whole force, exact derivatives, no window; window_power is 2, so that setting window is enough to sharpen.
+ *
+ * Out: law
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT
+ */
+fixpair_status_t fixpair_force_law_init(struct fixpair_force_law *law);
+
+/*
+ * Scratch of fixpair_forces_*, fixpair_force_* and fixpair_potential_*: 24 n bytes.
+ *
+ * Out: scratch
+ * In:  n  cells on a side
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERFLOW
+ */
+fixpair_status_t fixpair_force_scratch(struct fixpair_layout *scratch, size_t n);
+
+/*
+ * From modes of the density to modes of F = -grad inverse-Laplacian delta, all three components in one pass.
+ *
+ * F is in the unit of L: for a linear field the Zel'dovich displacement x - q itself. The peculiar acceleration is 3/2 Omega_m H0^2/a^2 times F where F is in
+ * comoving lengths. A particle of weight w pulls another with w/mass L^3/(4 pi r^2). Read out with the window of the deposit, the force of any law
+ * conserves momentum to rounding, and no particle pulls itself. k = 0 and the Nyquist modes (|n_a| = n/2 on any axis: an odd derivative has no value
+ * there) become zero. A whole force, beside the density two meshes:
+ *
+ *    memset(x, 0, len * sizeof *x);
+ *    fixpair_deposit_f64(x, len, &cells, ...);
+ *    fft.forward(fft.context, x, len);
+ *    fixpair_forces_f64(x, y, z, len, &modes, &law, L, total_weight, ...);
+ *    fft.inverse(fft.context, x, len);                   and y, z
+ *    fixpair_read_out_f64(force_x, 3, x, len, &cells, ...);    and y, z, with the same window
+ *
+ * In/Out: x     len reals on the brick: F_k, the forward transform of deposited weights, not normalised; then the modes of F_x, whose inverse transform,
+ *               not normalised, is the force on the cells
+ * Out: y, z     len reals each: the modes of F_y and F_z
+ * In:  brick    of Fourier space
+ *      law
+ *      box_size L
+ *      mass     the sum of all weights, of all processes
+ *      scratch  scratch_len bytes, see fixpair_force_scratch
+ *      exec     or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _SCRATCH, _NOT_FINITE, FIXPAIR_ERROR_RANGE if the box or the mass is not
+ *          positive or L/(n mass) no normal number, or why brick or law are refused; after FIXPAIR_ERROR_HOOK the meshes are undefined.
+ *          Modes are not checked.
+ * Cost: one pass, which reads one mesh and writes three
+ */
+fixpair_status_t fixpair_forces_f64(double *x,
+                                    double *y,
+                                    double *z,
+                                    size_t len,
+                                    const struct fixpair_brick *brick,
+                                    const struct fixpair_force_law *law,
+                                    double box_size,
+                                    double mass,
+                                    void *scratch,
+                                    size_t scratch_len,
+                                    const struct fixpair_exec *exec);
+
+/* fixpair_forces_f64 in single precision: the same arithmetic in double precision, rounded once. */
+fixpair_status_t fixpair_forces_f32(float *x,
+                                    float *y,
+                                    float *z,
+                                    size_t len,
+                                    const struct fixpair_brick *brick,
+                                    const struct fixpair_force_law *law,
+                                    double box_size,
+                                    double mass,
+                                    void *scratch,
+                                    size_t scratch_len,
+                                    const struct fixpair_exec *exec);
+
+/*
+ * One component of fixpair_forces_f64, the same bits, to another mesh: for hosts with one mesh to spare beside the density.
+ *
+ * Out: out     len reals on the brick: the modes of F_axis
+ * In:  density  len reals: F_k as for fixpair_forces_f64
+ *      axis     0, 1, 2 for x, y, z
+ *      brick, law, box_size, mass, scratch, scratch_len, exec  as fixpair_forces_f64
+ * Returns: as fixpair_forces_f64, and FIXPAIR_ERROR_RANGE for another axis
+ * Cost: one pass, which reads one mesh and writes one
+ */
+fixpair_status_t fixpair_force_f64(double *out,
+                                   const double *density,
+                                   size_t len,
+                                   const struct fixpair_brick *brick,
+                                   size_t axis,
+                                   const struct fixpair_force_law *law,
+                                   double box_size,
+                                   double mass,
+                                   void *scratch,
+                                   size_t scratch_len,
+                                   const struct fixpair_exec *exec);
+
+/* fixpair_force_f64 in single precision. */
+fixpair_status_t fixpair_force_f32(float *out,
+                                   const float *density,
+                                   size_t len,
+                                   const struct fixpair_brick *brick,
+                                   size_t axis,
+                                   const struct fixpair_force_law *law,
+                                   double box_size,
+                                   double mass,
+                                   void *scratch,
+                                   size_t scratch_len,
+                                   const struct fixpair_exec *exec);
+
+/*
+ * The inverse Laplacian of delta: phi_k = -S/(W^power K2) delta_k, in the unit of L^2; the peculiar potential is 3/2 Omega_m H0^2/a times it.
+ *
+ * For hosts that take differences in real space, which gives them the force of the law with that gradient, and for energies. The law's own gradient means nothing here.
+ *
+ * In/Out: modes  len reals on the brick: F_k as for fixpair_forces_f64, then phi_k
+ * In:  brick, law, box_size, mass, scratch, scratch_len, exec  as fixpair_forces_f64
+ * Returns: as fixpair_forces_f64, and FIXPAIR_ERROR_RANGE if L^2/(n^2 mass) is no normal number
+ * Cost: one pass over one mesh
+ */
+fixpair_status_t fixpair_potential_f64(double *modes,
+                                       size_t len,
+                                       const struct fixpair_brick *brick,
+                                       const struct fixpair_force_law *law,
+                                       double box_size,
+                                       double mass,
+                                       void *scratch,
+                                       size_t scratch_len,
+                                       const struct fixpair_exec *exec);
+
+/* fixpair_potential_f64 in single precision. */
+fixpair_status_t fixpair_potential_f32(float *modes,
+                                       size_t len,
+                                       const struct fixpair_brick *brick,
+                                       const struct fixpair_force_law *law,
+                                       double box_size,
+                                       double mass,
+                                       void *scratch,
+                                       size_t scratch_len,
                                        const struct fixpair_exec *exec);
 
 /*

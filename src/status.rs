@@ -41,6 +41,8 @@ pub enum Error {
     Convergence = -16,
     /// A particle lies outside the region of cells, or so near its edge that its window reaches beyond it.
     Outside = -17,
+    /// The caller's observer asked a run to stop: what it leaves behind is sound, and it can go on.
+    Stopped = -18,
 }
 
 /// What every kernel returns.
@@ -48,7 +50,7 @@ pub type Result<T> = core::result::Result<T, Error>;
 
 impl Error {
     /// All errors, in the order of their numbers.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::Null,
         Self::Length,
         Self::Alignment,
@@ -66,6 +68,7 @@ impl Error {
         Self::Thread,
         Self::Convergence,
         Self::Outside,
+        Self::Stopped,
     ];
 
     /// The number that C sees.
@@ -111,6 +114,7 @@ impl Error {
             Self::Outside => {
                 c"a particle lies outside the brick: add ghost planes or send it to the process whose it is"
             }
+            Self::Stopped => c"the observer asked to stop: call again with the same list to go on",
         }
     }
 }

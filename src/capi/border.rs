@@ -41,7 +41,7 @@ pub(super) struct Border {
 }
 
 impl Border {
-    const SPANS: usize = 20;
+    const SPANS: usize = 40;
 
     pub(super) fn new() -> Self {
         let none = Span { start: 0, size: 0, stride: 1, count: 0, written: false };

@@ -77,7 +77,19 @@ pub(super) unsafe fn components<'a, C: Triple>(
     pointer: *const C,
 ) -> Result<Components<'a, C::Real>> {
     // SAFETY: the caller's promise.
-    let (start, stride, length) = unsafe { border.read_one(pointer) }?.parts();
+    unsafe {
+        let of = border.read_one(pointer)?;
+        components_of(border, of)
+    }
+}
+
+/// # Safety
+/// Nobody else touches the elements.
+pub(super) unsafe fn components_of<'a, C: Triple>(
+    border: &mut Border,
+    of: &C,
+) -> Result<Components<'a, C::Real>> {
+    let (start, stride, length) = of.parts();
     if stride == 0 {
         return Err(Error::Range);
     }

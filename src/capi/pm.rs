@@ -74,7 +74,7 @@ impl Places for fixpair_positions_f32 {
 }
 
 /// The two position structs, as one.
-trait Places: Copy {
+pub(super) trait Places: Copy {
     type Real: Real;
 
     /// Starts, stride, particles.
@@ -83,9 +83,24 @@ trait Places: Copy {
 
 /// # Safety
 /// `pointer` is null or points to positions whose elements nobody writes.
-unsafe fn positions<'a, P: Places>(border: &mut Border, pointer: *const P) -> Result<Positions<'a, P::Real>> {
+pub(super) unsafe fn positions<'a, P: Places>(
+    border: &mut Border,
+    pointer: *const P,
+) -> Result<Positions<'a, P::Real>> {
     // SAFETY: the caller's promise.
-    let (start, stride, length) = unsafe { border.read_one(pointer) }?.parts();
+    unsafe {
+        let of = border.read_one(pointer)?;
+        positions_of(border, of)
+    }
+}
+
+/// # Safety
+/// Nobody writes the elements.
+pub(super) unsafe fn positions_of<'a, P: Places>(
+    border: &mut Border,
+    of: &P,
+) -> Result<Positions<'a, P::Real>> {
+    let (start, stride, length) = of.parts();
     if stride == 0 {
         return Err(Error::Range);
     }

@@ -44,6 +44,8 @@ pub const FIXPAIR_ERROR_THREAD: i32 = -15;
 pub const FIXPAIR_ERROR_CONVERGENCE: i32 = -16;
 /// A particle lies outside the brick of cells, or its window reaches beyond it.
 pub const FIXPAIR_ERROR_OUTSIDE: i32 = -17;
+/// The host's observer asked a run to stop; it can go on.
+pub const FIXPAIR_ERROR_STOPPED: i32 = -18;
 
 pub(super) fn code(result: Result<()>) -> fixpair_status_t {
     result.map_or_else(Error::code, |()| FIXPAIR_OK)

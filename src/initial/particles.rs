@@ -62,6 +62,30 @@ impl<'a, T: Real> Components<'a, T> {
         Self { start, stride, particles, life: PhantomData }
     }
 
+    /// Particles.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.particles
+    }
+
+    /// No particles?
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.particles == 0
+    }
+
+    /// The same elements, lent on: for a call that takes the value while the caller keeps it.
+    #[must_use]
+    pub const fn reborrow(&mut self) -> Components<'_, T> {
+        Components { start: self.start, stride: self.stride, particles: self.particles, life: PhantomData }
+    }
+
+    /// First elements, and the stride.
+    #[inline(always)]
+    pub(crate) const fn parts(&self) -> ([*mut T; 3], usize) {
+        (self.start, self.stride)
+    }
+
     pub(super) fn check_length(&self, particles: usize) -> Result<()> {
         if self.particles == particles { Ok(()) } else { Err(Error::Length) }
     }
@@ -240,7 +264,7 @@ fn load<T: Real>(block: &mut [f64; BLOCK], values: &[T]) {
 
 /// x modulo L where x lies in the box or the ones beside it.
 #[inline(always)]
-fn wrap_once(x: f64, box_size: f64) -> f64 {
+pub(crate) fn wrap_once(x: f64, box_size: f64) -> f64 {
     let x = if x < 0.0 { x + box_size } else { x };
     if x >= box_size { x - box_size } else { x }
 }
@@ -249,7 +273,7 @@ fn wrap_once(x: f64, box_size: f64) -> f64 {
 const FARTHEST: f64 = 1e9;
 
 /// x modulo L; NaN where x is not finite or so far away that its place in the box is lost.
-fn wrap(x: f64, box_size: f64) -> f64 {
+pub(crate) fn wrap(x: f64, box_size: f64) -> f64 {
     let once = wrap_once(x, box_size);
     if once >= 0.0 && once < box_size {
         return once;

@@ -2,6 +2,10 @@
 
 use core::marker::PhantomData;
 
+use super::frame::BLOCK;
+use super::sort::CHUNK;
+use crate::exec::Exec;
+use crate::initial::particles::Components;
 use crate::real::Real;
 use crate::status::{Error, Result};
 
@@ -79,38 +83,139 @@ impl<'a, T: Real> Positions<'a, T> {
         at: usize,
         to: &mut [[T; N]; 3],
     ) {
-        let triples =
-            [0, 1, 2].map(|axis| self.start[0].wrapping_add(axis)) == self.start && self.stride == 3;
-        if triples && count == N {
-            // SAFETY: the particles exist (caller), their coordinates without a gap.
-            let from = unsafe { &*self.start[0].add(3 * first).cast::<[[T; 3]; N]>() };
-            for i in 0..N {
-                for axis in 0..3 {
-                    to[axis][i] = from[i][axis];
-                }
-            }
-        } else {
-            for axis in 0..3 {
-                // SAFETY: as the caller says.
-                unsafe { self.load(axis, first, count, &mut to[axis][at..]) };
-            }
-        }
+        // SAFETY: as the caller says.
+        unsafe { load_all(self.start, self.stride, first, count, at, to) }
     }
+}
 
-    /// Copies one coordinate of `count` consecutive particles to the front of `to`.
-    ///
-    /// # Safety
-    /// `first + count` is at most [`Positions::len`], and `count` at most the length of `to`.
-    #[inline(always)]
-    unsafe fn load(&self, axis: usize, first: usize, count: usize, to: &mut [T]) {
-        let stride = self.stride;
-        // SAFETY: the particles exist (caller).
-        let start = unsafe { self.start[axis].add(first * stride) };
-        for i in 0..count {
-            // SAFETY: as above; `to` is long enough (caller).
-            unsafe { *to.get_unchecked_mut(i) = start.add(i * stride).read() };
+impl<'a, T: Real> From<&'a Components<'_, T>> for Positions<'a, T> {
+    /// Reads what is elsewhere written.
+    fn from(components: &'a Components<'_, T>) -> Self {
+        let (start, stride) = components.parts();
+        Self {
+            start: start.map(<*mut T>::cast_const),
+            stride,
+            particles: components.len(),
+            life: PhantomData,
         }
     }
+}
+
+/// Copies the components of `count` consecutive particles to the front of `to`.
+///
+/// # Safety
+/// `first + count` is at most [`Components::len`], `count` at most `N`, and no other thread touches the particles now.
+#[inline(always)]
+pub(super) unsafe fn load_components<T: Real, const N: usize>(
+    from: &Components<'_, T>,
+    first: usize,
+    count: usize,
+    to: &mut [[T; N]; 3],
+) {
+    let (start, stride) = from.parts();
+    // SAFETY: as the caller says.
+    unsafe { load_all(start.map(<*mut T>::cast_const), stride, first, count, 0, to) }
+}
+
+/// Sets the components of `count` consecutive particles to the front of `from`.
+///
+/// # Safety
+/// As [`load_components`].
+#[inline(always)]
+pub(super) unsafe fn store_components<T: Real, const N: usize>(
+    to: &Components<'_, T>,
+    first: usize,
+    count: usize,
+    from: &[[T; N]; 3],
+) {
+    let (start, stride) = to.parts();
+    if are_triples(start.map(<*mut T>::cast_const), stride) && count == N {
+        // SAFETY: the particles exist (caller), their components without a gap.
+        let to = unsafe { &mut *start[0].add(3 * first).cast::<[[T; 3]; N]>() };
+        for i in 0..N {
+            for axis in 0..3 {
+                to[i][axis] = from[axis][i];
+            }
+        }
+    } else {
+        for axis in 0..3 {
+            // SAFETY: the particles exist (caller).
+            let start = unsafe { start[axis].add(first * stride) };
+            for i in 0..count {
+                // SAFETY: as above; `from` is long enough (caller).
+                unsafe { start.add(i * stride).write(from[axis][i]) };
+            }
+        }
+    }
+}
+
+/// x0 y0 z0 x1 y1 z1 ... ?
+#[inline(always)]
+fn are_triples<T>(start: [*const T; 3], stride: usize) -> bool {
+    [0, 1, 2].map(|axis| start[0].wrapping_add(axis)) == start && stride == 3
+}
+
+/// Copies the components of `count` consecutive particles to `to[axis][at ..]`.
+///
+/// # Safety
+/// The particles exist, nobody writes them now, and `at + count` is at most `N`.
+#[inline(always)]
+unsafe fn load_all<T: Real, const N: usize>(
+    start: [*const T; 3],
+    stride: usize,
+    first: usize,
+    count: usize,
+    at: usize,
+    to: &mut [[T; N]; 3],
+) {
+    if are_triples(start, stride) && count == N {
+        // SAFETY: the particles exist (caller), their components without a gap.
+        let from = unsafe { &*start[0].add(3 * first).cast::<[[T; 3]; N]>() };
+        for i in 0..N {
+            for axis in 0..3 {
+                to[axis][i] = from[i][axis];
+            }
+        }
+    } else {
+        for axis in 0..3 {
+            // SAFETY: the particles exist (caller).
+            let start = unsafe { start[axis].add(first * stride) };
+            for (i, to) in to[axis][at..at + count].iter_mut().enumerate() {
+                // SAFETY: as above.
+                *to = unsafe { start.add(i * stride).read() };
+            }
+        }
+    }
+}
+
+/// Copies the components of all particles, between any layouts.
+///
+/// # Errors
+/// `Length` unless there are as many particles in both, `Hook`.
+///
+/// Cost: one pass over both.
+pub fn copy_components<T: Real>(
+    to: &mut Components<'_, T>,
+    from: &Positions<'_, T>,
+    exec: &dyn Exec,
+) -> Result<()> {
+    let particles = from.len();
+    if to.len() != particles {
+        return Err(Error::Length);
+    }
+    let to = &*to;
+    exec.parallel_for(particles.div_ceil(CHUNK), &|chunk| {
+        let end = particles.min((chunk + 1) * CHUNK);
+        let mut block = [[T::ZERO; BLOCK]; 3];
+        for first in (chunk * CHUNK..end).step_by(BLOCK) {
+            let count = BLOCK.min(end - first);
+            // SAFETY: the particles exist, and blocks are each copied by one thread.
+            unsafe {
+                from.load_all(first, count, 0, &mut block);
+                store_components(to, first, count, &block);
+            }
+        }
+    })
 }
 
 /// One real a particle, read only: weights.

@@ -125,6 +125,45 @@ impl<'a, T: Real> Sorter<'a, T> {
         })
     }
 
+    /// As `unsort`, in blocks of consecutive particles: `take` gets the number of the first, how many they are, and their records' first three
+    /// numbers.
+    pub(super) fn unsort_blocks(
+        &mut self,
+        count: usize,
+        simd: Simd,
+        exec: &dyn Exec,
+        take: impl Fn(usize, usize, &[[T; BLOCK]; 3]) + Sync,
+    ) -> Result<()> {
+        let tiles = self.starts.len() - 1;
+        let chunks = count.div_ceil(CHUNK);
+        let (keys, records) = (&self.keys[..count], &*self.records);
+        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        exec.parallel_for(chunks, &|chunk| {
+            let begin = chunk * CHUNK;
+            // SAFETY: chunks have counters of their own, inside the slice.
+            let ends = unsafe { counters.part(chunk * tiles, tiles) };
+            let keys = &keys[begin..count.min(begin + CHUNK)];
+            simd.vectorise(
+                #[inline(always)]
+                || {
+                    let mut columns = [[T::ZERO; BLOCK]; 3];
+                    // Writing left the counters behind each tile's last particle of the chunk.
+                    for (b, keys) in keys.chunks(BLOCK).enumerate().rev() {
+                        for (i, &key) in keys.iter().enumerate().rev() {
+                            let place = &mut ends[usize::from(key)];
+                            *place -= 1;
+                            let record = &records[*place as usize];
+                            for axis in 0..3 {
+                                columns[axis][i] = record[axis];
+                            }
+                        }
+                        take(begin + b * BLOCK, keys.len(), &columns);
+                    }
+                },
+            );
+        })
+    }
+
     /// First half of the sort of particles `first .. first + count`, count <= [`BATCH`]: finds their tiles. Returns how often the tile changes from
     /// one particle to the next. `NotFinite` or `Outside` for what no cell can take.
     pub(super) fn count(

@@ -5,6 +5,7 @@ pub(crate) mod built;
 pub(crate) mod convolution;
 pub(crate) mod deposit;
 pub(crate) mod dft;
+pub(crate) mod force;
 pub(crate) mod power;
 pub(crate) mod transform;
 pub(crate) mod white;

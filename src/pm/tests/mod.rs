@@ -1,6 +1,8 @@
 //! What the tests of deposits share, and deposits against their definition.
 
 mod bits;
+mod evolve;
+mod factors;
 mod interlacing;
 mod regions;
 

@@ -1,0 +1,243 @@
+//! Kicks: velocities changed by forces on meshes, u_i <- keep u_i + force F(x_i) + first psi1_i + second psi2_i.
+//!
+//! F(x_i) = sum_c W(x_c - x_i) F_c is read out of the three meshes as `read_out.rs` does; psi are displacements of the particles themselves, for
+//! COLA (Tassev, Zaldarriaga & Eisenstein 2013, arXiv:1301.0322), whose velocities are those left over by Lagrangian perturbation theory. The four
+//! coefficients are the stepper's: they carry all factors of time and all units.
+//!
+//! A kick is one pass over positions and velocities: no array of forces at particles is needed.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use super::columns::{Positions, load_components, store_components};
+use super::deposit::deposit_scratch;
+use super::frame::{Assignment, BLOCK, Frame, NOT_FINITE};
+use super::gather::{Meshes, Places};
+use super::region::Region;
+use super::sort::{self, BATCH, CHUNK, Fourth, IN_ORDER, Sorter, block};
+use super::tiles::Tiling;
+use super::window::Window;
+use crate::exec::Exec;
+use crate::initial::particles::Components;
+use crate::real::Real;
+use crate::scratch::{Arena, Layout};
+use crate::simd::Simd;
+use crate::status::{Error, Result};
+
+/// Coefficients of a kick: velocity <- `keep` velocity + `force` F + `first` psi1 + `second` psi2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kick {
+    /// Of the velocity before.
+    pub keep: f64,
+    /// Of the force.
+    pub force: f64,
+    /// Of the first-order displacement.
+    pub first: f64,
+    /// Of the second-order displacement.
+    pub second: f64,
+}
+
+/// Displacements of the particles by Lagrangian perturbation theory, one triple a particle.
+#[derive(Clone, Copy)]
+pub struct Lpt<'a, T> {
+    /// First order.
+    pub first: Positions<'a, T>,
+    /// Second order, if there is one.
+    pub second: Option<Positions<'a, T>>,
+}
+
+/// Scratch of [`kick`]: that of the deposit.
+///
+/// # Errors
+/// As [`deposit_scratch`].
+pub fn kick_scratch<T: Real>(region: &Region, particles: usize, window: Window) -> Result<Layout> {
+    deposit_scratch::<T>(region, particles, window)
+}
+
+/// Kicks particles: u_i <- keep u_i + force F(x_i) + first psi1_i + second psi2_i, summed in `f64` and rounded once.
+///
+/// `velocity`: changed. `position`: as for the deposit. `forces`: the components of F on `region`, ghost planes filled (see
+/// [`super::ghosts::copy_cells`]). `lpt`: needed where `first` or `second` is not 0.
+///
+/// # Errors
+/// As [`super::deposit::deposit`]; `NotFinite` also for a coefficient, `Null` for displacements that a coefficient asks for and that are not
+/// there. After `NotFinite` for a position, velocity, force or displacement and after `Outside` some velocities are kicked, some not.
+///
+/// The same bits for any number of threads.
+pub fn kick<T: Real>(
+    velocity: &mut Components<'_, T>,
+    position: &Positions<'_, T>,
+    forces: [&[T]; 3],
+    region: &Region,
+    assignment: &Assignment,
+    kick: &Kick,
+    lpt: Option<&Lpt<'_, T>>,
+    scratch: &mut [u8],
+    exec: &dyn Exec,
+) -> Result<()> {
+    kick_with(Simd::detect(), velocity, position, forces, region, assignment, kick, lpt, scratch, exec)
+}
+
+pub(super) fn kick_with<T: Real>(
+    simd: Simd,
+    velocity: &mut Components<'_, T>,
+    position: &Positions<'_, T>,
+    forces: [&[T]; 3],
+    region: &Region,
+    assignment: &Assignment,
+    kick: &Kick,
+    lpt: Option<&Lpt<'_, T>>,
+    scratch: &mut [u8],
+    exec: &dyn Exec,
+) -> Result<()> {
+    let frame = Frame::new(region, assignment)?;
+    let meshes = Meshes::new(forces, region, &frame, assignment.window)?;
+    let particles = position.len();
+    if velocity.len() != particles {
+        return Err(Error::Length);
+    }
+    if !(kick.keep.is_finite() && kick.force.is_finite()) {
+        return Err(Error::NotFinite);
+    }
+    let lpt = Terms::new(lpt, [kick.first, kick.second], particles)?;
+    let tiling = Tiling::of(region, &frame);
+    let mut arena = Arena::new(scratch, sort::layout::<T>(particles, tiling.len())?)?;
+    let mut sorter = Sorter::new(&mut arena, particles, tiling.len())?;
+    let target = Target { velocity, kick, lpt };
+    for first in (0..particles).step_by(BATCH) {
+        let count = BATCH.min(particles - first);
+        let changes = sorter.count(position, first, count, &frame, &tiling, simd, exec)?;
+        let wrong = AtomicU32::new(0);
+        // The sums of a particle do not depend on it.
+        if changes < count / IN_ORDER {
+            exec.parallel_for(count.div_ceil(CHUNK), &|chunk| {
+                let numbers = chunk * CHUNK..count.min((chunk + 1) * CHUNK);
+                let flags = simd.vectorise(
+                    #[inline(always)]
+                    || {
+                        let mut wrong = 0;
+                        let (mut places, mut forces) = (Places::new(), [[T::ZERO; BLOCK]; 3]);
+                        for begin in numbers.clone().step_by(BLOCK) {
+                            places.count = BLOCK.min(numbers.end - begin);
+                            let Places { count, v, index } = &mut places;
+                            block(position, first + begin, *count, &frame, v, index);
+                            // SAFETY: the sorter found all particles of the batch inside; each is kicked by one thread.
+                            unsafe {
+                                meshes.read(&places, &mut forces);
+                                wrong |= target.kick(first + begin, places.count, &forces);
+                            }
+                        }
+                        wrong
+                    },
+                );
+                wrong.fetch_or(flags, Ordering::Relaxed);
+            })?;
+        } else {
+            sorter.write(position, Fourth::One, first, count, &frame, simd, exec)?;
+            sorter.each_tile(exec, &|tile, records| {
+                meshes.fetch(tiling.first_cells(tile), records.len());
+                simd.vectorise(
+                    #[inline(always)]
+                    // SAFETY: the sorter's records, on this frame.
+                    || unsafe { meshes.read_records(records) },
+                );
+            })?;
+            sorter.unsort_blocks(
+                count,
+                simd,
+                exec,
+                #[inline(always)]
+                |begin, count, forces| {
+                    // SAFETY: the particles exist, and each is kicked by one thread.
+                    let flags = unsafe { target.kick(first + begin, count, forces) };
+                    if flags != 0 {
+                        wrong.fetch_or(flags, Ordering::Relaxed);
+                    }
+                },
+            )?;
+        }
+        sort::check(&wrong)?;
+    }
+    Ok(())
+}
+
+/// Velocities and what else changes them.
+struct Target<'a, 'b, T> {
+    velocity: &'a Components<'b, T>,
+    kick: &'a Kick,
+    lpt: Terms<'a, T>,
+}
+
+impl<T: Real> Target<'_, '_, T> {
+    /// Kicks a block of consecutive particles. Returns what is wrong with any of them.
+    ///
+    /// # Safety
+    /// The particles exist, and no other thread touches their velocities now.
+    #[inline(always)]
+    unsafe fn kick(&self, first: usize, count: usize, forces: &[[T; BLOCK]; 3]) -> u32 {
+        let mut u = [[T::ZERO; BLOCK]; 3];
+        // SAFETY: as the caller says.
+        unsafe { load_components(self.velocity, first, count, &mut u) };
+        let mut sum = [[0.0; BLOCK]; 3];
+        for axis in 0..3 {
+            for i in 0..BLOCK {
+                sum[axis][i] =
+                    self.kick.keep * u[axis][i].to_f64() + self.kick.force * forces[axis][i].to_f64();
+            }
+        }
+        // SAFETY: there are as many displacements as particles.
+        unsafe { self.lpt.add(first, count, &mut sum) };
+        let mut lost = 0;
+        for axis in 0..3 {
+            for i in 0..BLOCK {
+                u[axis][i] = T::from_f64(sum[axis][i]);
+                lost |= u32::from(!u[axis][i].is_finite() & (i < count));
+            }
+        }
+        // SAFETY: as the caller says.
+        unsafe { store_components(self.velocity, first, count, &u) };
+        lost * NOT_FINITE
+    }
+}
+
+/// Displacements that have a coefficient, and theirs.
+pub(super) struct Terms<'a, T> {
+    terms: [Option<(Positions<'a, T>, f64)>; 2],
+}
+
+impl<'a, T: Real> Terms<'a, T> {
+    /// `NotFinite` for a coefficient, `Null` for one without displacements, `Length` unless there is one displacement a particle.
+    pub(super) fn new(lpt: Option<&Lpt<'a, T>>, coefficients: [f64; 2], particles: usize) -> Result<Self> {
+        let orders = [lpt.map(|lpt| lpt.first), lpt.and_then(|lpt| lpt.second)];
+        let mut terms = [None; 2];
+        for (order, (displacement, coefficient)) in orders.into_iter().zip(coefficients).enumerate() {
+            if !coefficient.is_finite() {
+                return Err(Error::NotFinite);
+            }
+            if displacement.is_some_and(|displacement| displacement.len() != particles) {
+                return Err(Error::Length);
+            }
+            if coefficient != 0.0 {
+                terms[order] = Some((displacement.ok_or(Error::Null)?, coefficient));
+            }
+        }
+        Ok(Self { terms })
+    }
+
+    /// Adds coefficient times displacement to the sums of a block.
+    ///
+    /// # Safety
+    /// `first + count` is at most the number of particles, and `count` at most [`BLOCK`].
+    #[inline(always)]
+    pub(super) unsafe fn add(&self, first: usize, count: usize, sum: &mut [[f64; BLOCK]; 3]) {
+        let mut psi = [[T::ZERO; BLOCK]; 3];
+        for (displacement, coefficient) in self.terms.iter().flatten() {
+            // SAFETY: as the caller says.
+            unsafe { displacement.load_all(first, count, 0, &mut psi) };
+            for axis in 0..3 {
+                for i in 0..BLOCK {
+                    sum[axis][i] += coefficient * psi[axis][i].to_f64();
+                }
+            }
+        }
+    }
+}
