@@ -33,6 +33,8 @@ pub mod initial;
 
 pub mod pm;
 
+pub mod halos;
+
 pub mod estimate;
 
 pub mod capi;

@@ -71,12 +71,22 @@ impl<'a, T: Real> Positions<'a, T> {
         self.particles == 0
     }
 
+    /// The coordinates of one particle.
+    ///
+    /// # Safety
+    /// `i` is below [`Positions::len`].
+    #[inline(always)]
+    pub(crate) unsafe fn get(&self, i: usize) -> [T; 3] {
+        // SAFETY: the particle exists (caller).
+        self.start.map(|start| unsafe { start.add(i * self.stride).read() })
+    }
+
     /// Copies the coordinates of `count` consecutive particles to `to[axis][at ..]`.
     ///
     /// # Safety
     /// `first + count` is at most [`Positions::len`], and `at + count` at most `N`.
     #[inline(always)]
-    pub(super) unsafe fn load_all<const N: usize>(
+    pub(crate) unsafe fn load_all<const N: usize>(
         &self,
         first: usize,
         count: usize,

@@ -136,7 +136,9 @@ impl<T: Real> Moved<'_, '_, T> {
                 // Rounding to the particles' type may reach the far edge, which is the near edge of the next box.
                 let rounded = T::from_f64(sum[i]);
                 place[i] = if rounded >= self.edge { T::ZERO } else { rounded };
-                lost += u64::from(!(place[i] >= T::ZERO));
+                // NaN where it is lost.
+                let found = place[i] >= T::ZERO;
+                lost += u64::from(!found);
             }
         }
         // SAFETY: as above.

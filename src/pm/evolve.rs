@@ -5,6 +5,10 @@
 //! list of N scale factors N forces. [`Epoch`] says where both are: state is positions, velocities and epoch, and nothing else, so that a run that goes on
 //! from what was saved at any step gives the same bits as one that never stopped.
 //!
+//! Particles of a lattice feel it on meshes finer than one cell a particle, until they have left it: on two cells a particle a force whose windows are
+//! undone (`ForceLaw::window`) is amplified where the lattice has its own modes, and moves them wrongly by tens of per cent. Undo windows at one cell a
+//! particle, where the largest modes then move to 1e-5; leave them at two or more.
+//!
 //! Output at any a between: with the force of the nearest step, positions drift from a_i to a and velocities are kicked to a, in arrays of their
 //! own. That is the path that the leapfrog takes anyway; it meets the steps exactly, and its error is of second order, as theirs.
 

@@ -1,6 +1,8 @@
 //! Meshes read out at blocks of particles, the adjoint of `scatter.rs`: weights and offsets of all of a block by lanes, once for all meshes, then
 //! row by row out of the meshes.
 
+use core::ops::Range;
+
 use super::cells::{Cells, prefetch};
 use super::frame::{BLOCK, Frame};
 use super::region::Region;
@@ -57,7 +59,7 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
     }
 
     /// Asks the cache for the cells of a tile's particles.
-    pub(super) fn fetch(&self, first_cells: [core::ops::Range<usize>; 2], particles: usize) {
+    pub(super) fn fetch(&self, first_cells: &[Range<usize>; 2], particles: usize) {
         for mesh in self.meshes {
             self.cells.fetch(mesh.as_ptr(), first_cells.clone(), particles);
         }

@@ -134,7 +134,7 @@ pub(super) fn kick_with<T: Real>(
         } else {
             sorter.write(position, Fourth::One, first, count, &frame, simd, exec)?;
             sorter.each_tile(exec, &|tile, records| {
-                meshes.fetch(tiling.first_cells(tile), records.len());
+                meshes.fetch(&tiling.first_cells(tile), records.len());
                 simd.vectorise(
                     #[inline(always)]
                     // SAFETY: the sorter's records, on this frame.

@@ -6,6 +6,8 @@ pub(crate) mod convolution;
 pub(crate) mod deposit;
 pub(crate) mod dft;
 pub(crate) mod force;
+pub(crate) mod kick;
+pub(crate) mod fof;
 pub(crate) mod power;
 pub(crate) mod transform;
 pub(crate) mod white;

@@ -1,9 +1,14 @@
 //! What the tests of deposits share, and deposits against their definition.
 
 mod bits;
+<<<<<<< HEAD
 mod evolve;
 mod factors;
+=======
+mod drifts;
+>>>>>>> kick
 mod interlacing;
+mod kicks;
 mod regions;
 
 use std::vec;
@@ -15,6 +20,7 @@ use super::read_out::read_out_with;
 use super::window::weights;
 use super::*;
 use crate::exec::{Exec, Serial, Threads};
+use crate::initial::particles::Components;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::reference::deposit::{spline, windows};

@@ -1,0 +1,143 @@
+//! The catalogue: mass, centre, velocity and sizes of each group.
+//!
+//! With d and u the differences of positions and velocities from the means over the group's N particles of mass m:
+//!
+//! ```text
+//! M = N m,   radius = sqrt(<d^2>),   dispersion = sqrt(<u^2>)
+//! ```
+
+use super::members::{self, Members};
+use super::periodic::{check_finite, home};
+use super::sort::sort_by_size;
+use super::sums::{HaloSums, check, check_sums};
+use crate::exec::Exec;
+use crate::pm::columns::Positions;
+use crate::real::Real;
+use crate::scratch::Layout;
+use crate::status::{Error, Result};
+
+/// One group.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Halo {
+    /// The smallest id in it.
+    pub label: u64,
+    /// Particles.
+    pub members: u64,
+    /// Members times the mass of a particle.
+    pub mass: f64,
+    /// Mean position, periodic, in [0, L).
+    pub centre: [f64; 3],
+    /// Mean velocity; 0 where none were given.
+    pub velocity: [f64; 3],
+    /// Root mean square distance from the centre.
+    pub radius: f64,
+    /// Sides of the smallest box parallel to the axes that holds it.
+    pub extent: [f64; 3],
+    /// Root mean square of the velocity about the mean, in three dimensions: sqrt(3) times that along a line, if isotropic.
+    pub velocity_dispersion: f64,
+}
+
+impl Halo {
+    fn new(sums: &HaloSums, particle_mass: f64, box_size: f64) -> Self {
+        let n = sums.members as f64;
+        let (d, u) = (sums.position.map(|x| x / n), sums.velocity.map(|x| x / n));
+        let scatter = |squares: f64, mean: [f64; 3]| {
+            let variance = squares / n - ((mean[0] * mean[0] + mean[1] * mean[1]) + mean[2] * mean[2]);
+            libm::sqrt(variance.max(0.0))
+        };
+        Self {
+            label: sums.label,
+            members: sums.members,
+            mass: n * particle_mass,
+            centre: [0, 1, 2].map(|axis| home(sums.reference[axis] + d[axis], box_size)),
+            velocity: [0, 1, 2].map(|axis| sums.reference_velocity[axis] + u[axis]),
+            radius: scatter(sums.position_squared, d),
+            extent: [0, 1, 2].map(|axis| sums.high[axis] - sums.low[axis]),
+            velocity_dispersion: scatter(sums.velocity_squared, u),
+        }
+    }
+}
+
+fn check_mass(particle_mass: f64) -> Result<()> {
+    if !particle_mass.is_finite() {
+        return Err(Error::NotFinite);
+    }
+    if particle_mass > 0.0 { Ok(()) } else { Err(Error::Range) }
+}
+
+/// Largest first; of equal ones the smaller label first.
+fn sort(halos: &mut [Halo]) {
+    sort_by_size(halos, |halo| (halo.members, halo.label));
+}
+
+/// Scratch of [`halos`] and [`halo_sums`](super::halo_sums): 12 bytes a particle, and at most 4.3 MB.
+///
+/// # Errors
+/// `Overflow` for 2^32 particles and more, or if the bytes do not fit the address space.
+pub fn halos_scratch(particles: usize) -> Result<Layout> {
+    members::layout(particles)
+}
+
+/// Writes the groups of `n_min` particles and more, the largest first and of equal ones the smaller label first. Returns how many.
+///
+/// `halos`: particles / `n_min` of them are always enough. `labels`: one a particle, from [`fof_labels`](super::fof_labels), or any other
+/// numbers that tell groups apart. `particle_mass`: see [`particle_mass`](super::particle_mass).
+///
+/// # Errors
+/// `Length`, also if `halos` is too short; `NotFinite`; `Range` for `n_min` = 0, the mass or the box; `Overflow`, `Scratch`, `Alignment`;
+/// `Hook`, after which halos are undefined.
+///
+/// The same bits for any number of threads.
+pub fn halos<T: Real>(
+    halos: &mut [Halo],
+    labels: &[u64],
+    position: &Positions<'_, T>,
+    velocity: Option<&Positions<'_, T>>,
+    box_size: f64,
+    n_min: u64,
+    particle_mass: f64,
+    scratch: &mut [u8],
+    exec: &dyn Exec,
+) -> Result<usize> {
+    check(labels, position, velocity, box_size, n_min)?;
+    check_mass(particle_mass)?;
+    let keep = |_, members| members >= n_min;
+    let members = Members::new(labels, &keep, scratch, exec)?;
+    let groups = members.groups();
+    let halos = halos.get_mut(..groups).ok_or(Error::Length)?;
+    check_finite(position, exec)?;
+    velocity.map_or(Ok(()), |velocity| check_finite(velocity, exec))?;
+    members.write(halos, exec, &|label, records| {
+        Halo::new(&HaloSums::of(label, records, position, velocity, box_size), particle_mass, box_size)
+    })?;
+    sort(halos);
+    Ok(groups)
+}
+
+/// Turns sums of whole groups into a catalogue, ordered as by [`halos`], of those of `n_min` particles and more. Returns how many.
+///
+/// `halos`: as long as `sums`, or long enough.
+///
+/// # Errors
+/// `Length`; `NotFinite`; `Range` for `n_min` = 0, the mass, the box, or a reference outside it. Nothing is then written.
+pub fn halos_finish(
+    halos: &mut [Halo],
+    sums: &[HaloSums],
+    box_size: f64,
+    n_min: u64,
+    particle_mass: f64,
+) -> Result<usize> {
+    check_sums(sums, box_size)?;
+    check_mass(particle_mass)?;
+    if n_min == 0 {
+        return Err(Error::Range);
+    }
+    let kept = || sums.iter().filter(|sums| sums.members >= n_min);
+    let halos = halos.get_mut(..kept().count()).ok_or(Error::Length)?;
+    for (halo, sums) in halos.iter_mut().zip(kept()) {
+        *halo = Halo::new(sums, particle_mass, box_size);
+    }
+    sort(halos);
+    Ok(halos.len())
+}
