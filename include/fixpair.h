@@ -36,6 +36,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* The exponent n that Tassev et al. recommend for about ten steps from z = 9. */
+#define COLA_EXPONENT (-2.5)
+
 /* Done. */
 #define FIXPAIR_OK 0
 
@@ -89,6 +92,9 @@
 
 /* A particle lies outside the brick of cells, or its window reaches beyond it. */
 #define FIXPAIR_ERROR_OUTSIDE (-17)
+
+/* The host's observer asked a run to stop; it can go on. */
+#define FIXPAIR_ERROR_STOPPED (-18)
 
 /* Real cells. */
 #define FIXPAIR_SPACE_CONFIGURATION 0
@@ -176,6 +182,23 @@
 
 /* Two neighbours on either side: i (8 sin theta - sin 2 theta)/(6 H) and (15 - 16 cos theta + cos 2 theta)/(6 H^2). Fourth order. */
 #define FIXPAIR_DIFFERENCE_FOUR_POINT 2
+
+/* FastPM (Feng et al. 2016, arXiv:1603.00476): exact for growing modes of linear theory, in steps of any length. */
+#define FIXPAIR_STEPPER_FASTPM 0
+
+/* Plain leapfrog: exact for free motion and constant forces. */
+#define FIXPAIR_STEPPER_LEAPFROG 1
+
+/* COLA (Tassev, Zaldarriaga & Eisenstein 2013, arXiv:1301.0322): exact for second-order Lagrangian theory. */
+#define FIXPAIR_STEPPER_COLA 2
+
+
+
+/* Positions have reached the next scale factor of the list. */
+#define FIXPAIR_EVENT_STEP 0
+
+/* An output is in its arrays. */
+#define FIXPAIR_EVENT_OUTPUT 1
 
 /* Bins of |n| alone. */
 #define FIXPAIR_SECOND_NONE 0
@@ -536,19 +559,19 @@ typedef struct fixpair_positions_f32 {
  *
  *    phi_k = - S(k) / (W(k)^power K2(k)) delta_k,    F_k = - i K_a(k) phi_k,    S(k) = exp(-k^2 r_s^2)
  *
- * K2 is minus the Laplacian, i K_a the gradient. The laws of known codes (EXACT and so on are FIXPAIR_DIFFERENCE_...):
+ * K2 is minus the Laplacian, i K_a the gradient. The laws of known codes (EXACT stands for FIXPAIR_DIFFERENCE_EXACT, init for
+ * fixpair_force_law_init):
  *
  *    code                                 laplacian   gradient    window, power   split_scale
- *    fixpair_force_law_init;
- *    FastPM naive                         EXACT       EXACT       none            0
+ *    (init); FastPM naive                 EXACT       EXACT       none            0
  *    FastPM 1_4, its default              EXACT       FOUR_POINT  none            0
  *    FastPM 3_4                           TWO_POINT   FOUR_POINT  none            0
  *    FastPM 5_4                           FOUR_POINT  FOUR_POINT  none            0
  *    FastPM 3_2                           TWO_POINT   EXACT       none            0
  *    FastPM eastwood                      EXACT       EXACT       CIC, 2          0
  *    FastPM gadget                        EXACT       FOUR_POINT  CIC, 2          0
- *    7-point Laplacian, centred
- *    differences in real space            TWO_POINT   TWO_POINT   none            0
+ *    7-point Laplacian, centred differences
+ *    in real space                        TWO_POINT   TWO_POINT   none            0
  *    Gadget-2's Tree-PM, its mesh part    EXACT       FOUR_POINT  CIC, 2          1.25 L/n
  *
  * A Tree-PM host adds 1/r^2 [erfc(r/2 r_s) + r/(r_s sqrt pi) exp(-r^2/4 r_s^2)] of Newton's force for near pairs (Springel 2005,
@@ -571,6 +594,119 @@ typedef struct fixpair_force_law {
   /* r_s, in the unit of the box: 0 for the whole force. A Gaussian filter of dispersion s in x is s/sqrt 2. */
   double split_scale;
 } fixpair_force_law;
+
+/*
+ * What one particle does in a drift or a kick: c v + first psi1 + second psi2, with psi1 and psi2 the displacements of both orders where D = 1 and
+ * D2 = D2(1).
+ */
+typedef struct fixpair_step_factors {
+  /* d, of the velocity; or k, of the force. */
+  double factor;
+  /* Of grad phi1's displacement at D = 1: 0 but for COLA. */
+  double first;
+  /* Of the second-order displacement divided by its D2: 0 but for COLA. */
+  double second;
+} fixpair_step_factors;
+
+/* What moves the particles of a run. fixpair_gravity_init fills one. */
+typedef struct fixpair_gravity {
+  /* sizeof(fixpair_gravity). */
+  size_t struct_size;
+  /* Background. */
+  struct fixpair_cosmology cosmology;
+  /* Side of the box, in the unit of positions. */
+  double box_size;
+  /* H0 in the unit of velocities over that of positions: 100 for km/s and Mpc/h, 0.1 for km/s and kpc/h. */
+  double hubble;
+  /* From density to force. */
+  struct fixpair_force_law law;
+  /* n of FIXPAIR_STEPPER_COLA; not read by others. */
+  double cola_exponent;
+  /* FIXPAIR_STEPPER_FASTPM, _LEAPFROG or _COLA. */
+  int32_t stepper;
+  /* FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS, for the deposit of masses and the read-out of forces. */
+  int32_t window;
+} fixpair_gravity;
+
+/* The scale factors at which positions and velocities are. */
+typedef struct fixpair_epoch {
+  /* Of positions. */
+  double position;
+  /* Of velocities: the same at the start and the end of a run, half a step behind between its steps. */
+  double velocity;
+} fixpair_epoch;
+
+/*
+ * Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA needs. From
+ * modes: fixpair_displace_f64 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
+ */
+typedef struct fixpair_displacements_f64 {
+  /* First order, one a particle. */
+  struct fixpair_positions_f64 first;
+  /* Second order, one a particle; of length 0 for none. */
+  struct fixpair_positions_f64 second;
+  /* When. */
+  double scale_factor;
+} fixpair_displacements_f64;
+
+/* Where particles go at times between the steps of a run: each output overwrites the last. */
+typedef struct fixpair_outputs_f64 {
+  /* When: increasing, inside the list of steps. */
+  const double *scale_factors;
+  /* How many. */
+  size_t length;
+  /* One a particle. */
+  struct fixpair_components_f64 position;
+  /* Peculiar, one a particle. */
+  struct fixpair_components_f64 velocity;
+} fixpair_outputs_f64;
+
+/* What a run has just done. */
+typedef struct fixpair_progress {
+  /* FIXPAIR_EVENT_STEP or FIXPAIR_EVENT_OUTPUT. */
+  int32_t event;
+  /* Entry of the list of scale factors that positions have reached. */
+  size_t step;
+  /* The last entry of the list. */
+  size_t steps;
+  /* The output that was written; after a step, the one that comes next. */
+  size_t output;
+  /* Where the particles are: those of the run after a step, those of the output arrays after an output. */
+  struct fixpair_epoch epoch;
+} fixpair_progress;
+
+/* Who is told of progress. It may read the particles of the run and of the output arrays, and save them, but not change them. */
+typedef struct fixpair_observer {
+  /* Handed to observe as it is. */
+  void *context;
+  /* Returns 0 to go on; anything else ends the run after the step at hand with FIXPAIR_ERROR_STOPPED. */
+  int32_t (*observe)(void *context, const struct fixpair_progress *progress);
+} fixpair_observer;
+
+/*
+ * Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA needs. From
+ * modes: fixpair_displace_f32 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
+ */
+typedef struct fixpair_displacements_f32 {
+  /* First order, one a particle. */
+  struct fixpair_positions_f32 first;
+  /* Second order, one a particle; of length 0 for none. */
+  struct fixpair_positions_f32 second;
+  /* When. */
+  double scale_factor;
+} fixpair_displacements_f32;
+
+/* Where particles go at times between the steps of a run: each output overwrites the last. */
+typedef struct fixpair_outputs_f32 {
+  /* When: increasing, inside the list of steps. */
+  const double *scale_factors;
+  /* How many. */
+  size_t length;
+  /* One a particle. */
+  struct fixpair_components_f32 position;
+  /* Peculiar, one a particle. */
+  struct fixpair_components_f32 velocity;
+} fixpair_outputs_f32;
 
 /*
  * What spectra and correlation functions are binned by. n is an integer vector: the mode k = (2 pi/L) n, or the separation x = (L/N) n.
@@ -1835,6 +1971,188 @@ fixpair_status_t fixpair_potential_f32(float *modes,
                                        void *scratch,
                                        size_t scratch_len,
                                        const struct fixpair_exec *exec);
+
+/*
+ * Steps in time
+ * =============
+ */
+
+/*
+ * The factors of a drift, for any integrator: x += factor v + first psi1 + second psi2.
+ *
+ * Canonical velocity v = a^2 dx/dt/H0 in the unit of x: v = a u/H0 for the peculiar velocity u (H0 = 100 km/s per Mpc/h). At its time `at`, usually between
+ * `from` and `to`, it is known; E = H/H0, D the growth factor, G = a^2 E f D:
+ *
+ *   FastPM    factor = [D(to) - D(from)]/G(at)
+ *   leapfrog  factor = int da/(a^3 E)
+ *   COLA      factor = int (a/at)^n da/(a^3 E), for v - v_LPT; first = D(to) - D(from) - factor G(at), second the same of D2
+ *
+ * psi1 and psi2 are the displacements of both orders over D and over D2, so psi1 = x - q today in linear theory; first and second are 0 but for COLA.
+ * v is the full velocity.
+ *
+ * Out: factors
+ * In:  cosmology
+ *      stepper        FIXPAIR_STEPPER_FASTPM, _LEAPFROG or _COLA
+ *      cola_exponent  n, usually FIXPAIR_COLA_EXPONENT; read for COLA only: not 0, within +-10
+ *      from, to, at   scale factors in 1e-5 ..= 10, in any order
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _CHOICE, _VERSION, _CONVERGENCE
+ * Cost: 0.4 ms
+ */
+fixpair_status_t fixpair_drift_factors(struct fixpair_step_factors *factors,
+                                       const struct fixpair_cosmology *cosmology,
+                                       int32_t stepper,
+                                       double cola_exponent,
+                                       double from,
+                                       double to,
+                                       double at);
+
+/*
+ * The factors of a kick, for any integrator: v += factor F + first psi1 + second psi2.
+ *
+ * F = -grad inverse-Laplacian delta, what fixpair_forces_f64 gives, is known at its time `at`; all else as for fixpair_drift_factors.
+ *
+ *   FastPM    factor = [G(to) - G(from)]/D(at)
+ *   leapfrog  factor = (3/2) Om int da/(a^2 E)
+ *   COLA      factor = (3/2) Om [to^n - from^n]/(n at^(n-1))/(at^2 E(at)), for F - F_LPT; first = G(to) - G(from) - factor D(at),
+ *             second = G2(to) - G2(from) - factor (D2 - D^2)(at), G2 = a^2 E f2 D2
+ *
+ * Peculiar velocities u go by u_new = (from/to) u + (H0/to) (factor F + ...).
+ *
+ * Out: factors
+ * In:  as for fixpair_drift_factors
+ * Returns: as fixpair_drift_factors
+ * Cost: 0.4 ms
+ */
+fixpair_status_t fixpair_kick_factors(struct fixpair_step_factors *factors,
+                                      const struct fixpair_cosmology *cosmology,
+                                      int32_t stepper,
+                                      double cola_exponent,
+                                      double from,
+                                      double to,
+                                      double at);
+
+/*
+ * Equal steps of the scale factor; the first and last entries are exactly `from` and `to`.
+ *
+ * Out: scale_factors  len values: len - 1 steps
+ * In:  from, to       0 < from < to
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH for fewer than two entries, _ALIGNMENT, _NOT_FINITE, _RANGE
+ */
+fixpair_status_t fixpair_linear_steps(double *scale_factors, size_t len, double from, double to);
+
+/*
+ * Equal steps of the logarithm of the scale factor; the first and last entries are exactly `from` and `to`.
+ *
+ * Out, In, Returns: as fixpair_linear_steps
+ */
+fixpair_status_t fixpair_logarithmic_steps(double *scale_factors, size_t len, double from, double to);
+
+/*
+ * Runs
+ * ====
+ */
+
+/*
+ * Fills the gravity: the GOLIAT cosmology, a box of 1000 Mpc/h, km/s, FastPM, cloud in cell, and the force law of fixpair_force_law_init.
+ *
+ * Out: gravity
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT
+ */
+fixpair_status_t fixpair_gravity_init(struct fixpair_gravity *gravity);
+
+/*
+ * Scratch of fixpair_evolve_f64: the largest of those of the deposit, the kick and the forces, at most 75 MB however many particles.
+ *
+ * Out: scratch
+ * In:  fft        of a whole mesh
+ *      particles
+ *      window     FIXPAIR_WINDOW_...
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _CHOICE, _BRICK for a part of a mesh, or why the hook is refused
+ */
+fixpair_status_t fixpair_evolve_scratch_f64(struct fixpair_layout *scratch,
+                                            const struct fixpair_fft_f64 *fft,
+                                            size_t particles,
+                                            int32_t window);
+
+/* fixpair_evolve_scratch_f64 in single precision: at most 41 MB. */
+fixpair_status_t fixpair_evolve_scratch_f32(struct fixpair_layout *scratch,
+                                            const struct fixpair_fft_f32 *fft,
+                                            size_t particles,
+                                            int32_t window);
+
+/*
+ * Moves particles of one mass under their gravity, by the particle-mesh method, through a list of scale factors: from initial conditions to today.
+ *
+ * Step i has the force at a_i, kicks velocities to the middle of the next step, sqrt(a_i a_(i+1)), and drifts positions to a_(i+1) with them; at the
+ * end of the list velocities are kicked to its last entry. A list of N entries costs N forces. On the way velocities are half a step behind positions:
+ * `epoch` says where both are.
+ *
+ * Positions, velocities and epoch are the whole state. Save them in the observer, and a later call with them and the same list gives the same bits as a
+ * run that never stopped. Outputs up to the middle of the step at hand are then taken as written.
+ *
+ * Outputs at any time: with the force of the nearest step, positions drift from it to the output and velocities are kicked, in arrays of their own; no
+ * force is computed. They meet the steps exactly, with an error of second order between them.
+ *
+ * At two cells a particle or more (B >= 2) leave law.window at 0: a lattice of particles has modes of its own there, which sharpening would amplify. At
+ * one cell a particle FIXPAIR_WINDOW_PCS with law.window the same moves the largest modes to 1e-5.
+ *
+ * The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its transform,
+ * fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
+ *
+ * In/Out: position  wrapped into [0, L)
+ *      velocity  peculiar, a dx/dt, as fixpair_initial_conditions_f64 makes them
+ *      epoch     where they are: positions at an entry of the list, velocities there too or in the middle of the step before
+ * In:  gravity
+ *      displacements  for COLA; NULL for others
+ *      scale_factors  scale_factors_len entries, increasing, in 1e-5 ..= 10; see fixpair_linear_steps
+ *      outputs   or NULL
+ *      mesh1, mesh2, mesh3  mesh_len >= fft->length reals each, overwritten; aligned as the transform wants them
+ *      fft       of a whole mesh: side = particles a side times the mesh factor B, usually 1 or 2
+ *      scratch   scratch_len bytes, see fixpair_evolve_scratch_f64
+ *      observer  told of each step and output, and can stop the run; or NULL
+ *      exec      or NULL
+ * Returns: 0; FIXPAIR_ERROR_STOPPED if the observer asked for it: go on with the same list whenever you like; FIXPAIR_ERROR_NULL (also for COLA without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE
+ *          (also for a list that does not increase, and an epoch or output outside it), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh,
+ *          _NOT_FINITE: particles as they were, unless NOT_FINITE comes from particles that move beyond all numbers. After that and after
+ *          FIXPAIR_ERROR_HOOK they are undefined
+ * Cost: a step is four transforms, a deposit, a kick and a drift; memory beyond the particles: three meshes
+ */
+fixpair_status_t fixpair_evolve_f64(const struct fixpair_components_f64 *position,
+                                    const struct fixpair_components_f64 *velocity,
+                                    struct fixpair_epoch *epoch,
+                                    const struct fixpair_gravity *gravity,
+                                    const struct fixpair_displacements_f64 *displacements,
+                                    const double *scale_factors,
+                                    size_t scale_factors_len,
+                                    const struct fixpair_outputs_f64 *outputs,
+                                    double *mesh1,
+                                    double *mesh2,
+                                    double *mesh3,
+                                    size_t mesh_len,
+                                    const struct fixpair_fft_f64 *fft,
+                                    void *scratch,
+                                    size_t scratch_len,
+                                    const struct fixpair_observer *observer,
+                                    const struct fixpair_exec *exec);
+
+/* fixpair_evolve_f64 in single precision: 36 bytes a particle and 41 MB, at one cell a particle. */
+fixpair_status_t fixpair_evolve_f32(const struct fixpair_components_f32 *position,
+                                    const struct fixpair_components_f32 *velocity,
+                                    struct fixpair_epoch *epoch,
+                                    const struct fixpair_gravity *gravity,
+                                    const struct fixpair_displacements_f32 *displacements,
+                                    const double *scale_factors,
+                                    size_t scale_factors_len,
+                                    const struct fixpair_outputs_f32 *outputs,
+                                    float *mesh1,
+                                    float *mesh2,
+                                    float *mesh3,
+                                    size_t mesh_len,
+                                    const struct fixpair_fft_f32 *fft,
+                                    void *scratch,
+                                    size_t scratch_len,
+                                    const struct fixpair_observer *observer,
+                                    const struct fixpair_exec *exec);
 
 /*
  * Bins of spectra and correlation functions

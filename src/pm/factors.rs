@@ -50,16 +50,16 @@ pub enum Stepper {
     },
 }
 
-/// What one particle does in a drift or a kick: c v + first psi1 + second psi2, with psi1 and psi2 the displacements of both orders where D = 1 and
-/// D2 = D2(1).
+/// What a drift or a kick adds: factor times velocity or force, and first psi1 + second psi2, with psi1 and psi2 the displacements of both orders over their
+/// growth, D and D2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct StepFactors {
     /// d, of the velocity; or k, of the force.
     pub factor: f64,
-    /// Of grad phi1's displacement at D = 1: 0 but for COLA.
+    /// Of the first-order displacement over D: 0 but for COLA.
     pub first: f64,
-    /// Of the second-order displacement divided by its D2: 0 but for COLA.
+    /// Of the second-order displacement over D2: 0 but for COLA.
     pub second: f64,
 }
 

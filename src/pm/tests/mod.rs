@@ -1,12 +1,9 @@
 //! What the tests of deposits share, and deposits against their definition.
 
 mod bits;
-<<<<<<< HEAD
+mod drifts;
 mod evolve;
 mod factors;
-=======
-mod drifts;
->>>>>>> kick
 mod interlacing;
 mod kicks;
 mod regions;
