@@ -25,8 +25,8 @@ Usage: cargo run --release --example nonlinear -- [options]
       --steps N         steps of equal da from z = 32 to 0                 [default: 40]
   -s, --seeds N         pairs                                              [default: 1]
       --first-seed N    seed of the first pair                             [default: 1]
-  -w, --window NAME     cic, tsc or pcs                                    [default: tsc]
-      --gradient NAME   exact, 2 or 4 (points)                             [default: exact]
+  -w, --window NAME     cic, tsc or pcs                                    [default: cic]
+      --gradient NAME   exact, 2 or 4 (points)                             [default: 4]
       --laplacian NAME  exact, 2 or 4 (points)                             [default: exact]
       --deconvolve P    power of the window that is divided out of forces  [default: 0]
   -t, --threads N       threads; the results do not depend on it           [default: all cores]
@@ -71,8 +71,8 @@ impl Default for Arguments {
             steps: 40,
             seeds: 1,
             first_seed: 1,
-            window: Window::TriangularShapedCloud,
-            law: ForceLaw::default(),
+            window: Window::CloudInCell,
+            law: ForceLaw { gradient: Difference::FourPoint, ..ForceLaw::default() },
             threads: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
             output: PathBuf::from("nonlinear-output"),
         }
