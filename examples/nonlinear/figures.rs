@@ -88,7 +88,7 @@ fn halos(results: &Results) -> Drawing {
         let masses = || all.clone().filter(told).map(|bin| bin.mass);
         let (low, high) = (masses().fold(f64::MAX, f64::min), masses().fold(0.0, f64::max));
         let x = Axis::logarithmic(0.8 * low, 1.25 * high);
-        let axes = Axes { area, x, y: Axis::linear(0.0, 1.6) };
+        let axes = Axes { area, x, y: Axis::linear(0.0, 1.8) };
         let least = all.clone().find(|bin| bin.particles >= HALO_REACH).map_or(low, |bin| bin.mass);
         claim(&mut drawing, &axes, [least, 1.25 * high], HALO_CLAIM);
         for (halos, shade) in results.halos.iter().zip(shades) {
@@ -99,7 +99,7 @@ fn halos(results: &Results) -> Drawing {
             for bin in bins {
                 let ends = [bin.ratio() - bin.error(), bin.ratio() + bin.error()];
                 axes.line(&mut drawing, &[bin.mass; 2], &ends, Pen::solid(shade, 1.2));
-                drawing.disc(axes.place(bin.mass, bin.ratio().clamp(0.0, 1.6)), 3.0, shade);
+                drawing.disc(axes.place(bin.mass, bin.ratio().clamp(0.0, 1.8)), 3.0, shade);
             }
         }
         axes.title(&mut drawing, &format!("*z* = {z}"));
@@ -108,7 +108,7 @@ fn halos(results: &Results) -> Drawing {
             let mut entries: Vec<_> =
                 names.iter().zip(shades).map(|(name, shade)| (Key::Disc(shade), name.as_str())).collect();
             entries.push((Key::Band(CLAIM.fade(0.25)), "claim: 100 particles and more"));
-            axes.legend(&mut drawing, &entries, [false, true]);
+            axes.legend(&mut drawing, &entries, [false, false]);
         }
         let label = if output == 0 { "*N* found / *N* of the fit" } else { "" };
         axes.frame(&mut drawing, "*M* [Msun/*h*]", label);

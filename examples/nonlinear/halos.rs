@@ -67,8 +67,7 @@ fn masses(snapshot: &Snapshot<'_>, groups: &[Halo], exec: &dyn Exec) -> Result<V
     let mut scratch = Memory::new(refine_centres_scratch::<f32>(particles)?);
     refine_centres(&mut centres, &radii, &position, box_size, &shrink, scratch.bytes(), exec)?;
     drop(scratch);
-    let density =
-        Density { box_size, particles_total: particles as u64, particle_mass: 1.0, n_min: LEAST / 2 };
+    let density = Density { box_size, particles_total: particles as u64, particle_mass: 1.0, n_min: LEAST };
     let mut found = vec![Sphere::default(); centres.len()];
     let mut scratch = Memory::new(spheres_scratch::<f32>(particles)?);
     spheres(&mut found, &centres, &[OVERDENSITY], &position, &density, scratch.bytes(), exec)?;

@@ -11,7 +11,7 @@ use crate::theory::{Model, REDSHIFTS};
 pub(crate) const POWER_CLAIM: f64 = 0.04;
 pub(crate) const POWER_REACH: f64 = 0.25;
 
-/// Numbers of halos are claimed to agree with a fit to this part from this many particles.
+/// Numbers of groups are claimed to agree with Watson et al. to this part from this many particles.
 pub(crate) const HALO_CLAIM: f64 = 0.2;
 pub(crate) const HALO_REACH: u64 = 100;
 
@@ -45,7 +45,8 @@ pub(crate) fn claims(results: &Results) -> Vec<Claim> {
             });
         }
     }
-    for halos in &results.halos {
+    // Spheres are measured and not claimed: a soft force spreads the mass of small halos beyond their radius, and friends follow it.
+    for halos in results.halos.iter().filter(|halos| halos.fit == Fit::Watson) {
         for (bins, z) in halos.bins.iter().zip(REDSHIFTS) {
             let worst = telling(bins).max_by(|a, b| excess(a).total_cmp(&excess(b)));
             if let Some(worst) = worst {
