@@ -10,7 +10,7 @@
 //!
 //! Between particles two cells apart a mesh has room for one more wave: the first images of the particles' lattice lie at the mesh's Nyquist
 //! wavenumber. With the cloud-in-cell window and the exact gradient they push the particles, and small waves grow too much: P is 4% too high
-//! at k = 0.1 h/Mpc and 13% at 0.5, and more for an earlier start. Differences of two or four points vanish there. So the default is the
+//! at k = 0.08 h/Mpc and 10 to 15% at 0.5, and more for an earlier start. Differences of two or four points vanish there. So the default is the
 //! four-point gradient; with it a mesh of factor 3 changes P by less than 0.4% for k < 0.25.
 //!
 //! The data walks one way: arguments -> theory -> run -> (spectrum, halos) -> measure -> report and figures.
