@@ -19,6 +19,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "by_hand.h"
 #include "check.h"
 #include "fixpair.h"
 #include "groups.h"
@@ -204,81 +205,11 @@ static void check_particles(struct laboratory *lab) {
 
 /* ---- The same by hand. */
 
-/* The force on the cells, from particles where they are. */
-static int compute_force(struct simulation *run) {
-    const struct fixpair_fft_f32 *fft = &run->fft.hook;
-    struct fixpair_positions_f32 position = simulation_view(&run->position);
-    float *x = run->mesh[0], *y = run->mesh[1], *z = run->mesh[2];
-    memset(x, 0, fft->length * sizeof *x);
-    TRY(fixpair_deposit_f32(x, fft->length, &fft->configuration, &position, NULL, 0, run->gravity.box_size, run->gravity.window, 0.0,
-                            run->scratch, run->scratch_len, run->exec));
-    if (fft->forward(fft->context, x) != 0) return 1;
-    TRY(fixpair_forces_f32(x, y, z, fft->length, &fft->fourier, &run->gravity.law, run->gravity.box_size, (double)run->count,
-                           run->scratch, run->scratch_len, run->exec));
-    return fft->inverse(fft->context, x) != 0 || fft->inverse(fft->context, y) != 0 || fft->inverse(fft->context, z) != 0;
-}
-
-/* What displacements count in the unit that the factors want: one over their growth. Only COLA has any. */
-static int displacement_units(double unit[2], const struct simulation *run) {
-    struct fixpair_growth growth;
-    TRY(fixpair_growth_factors(&growth, &run->scale_factors[0], 1, &run->gravity.cosmology));
-    unit[0] = 1.0 / growth.d;
-    unit[1] = 1.0 / growth.d2;
-    return 0;
-}
-
-/* Factors are those of v = a u/H0, a^2 dx/dt over H0; arrays hold u, a dx/dt. */
-static int kick(struct simulation *run, double to) {
-    const struct fixpair_fft_f32 *fft = &run->fft.hook;
-    const struct fixpair_gravity *gravity = &run->gravity;
-    const int cola = gravity->stepper == FIXPAIR_STEPPER_COLA;
-    struct fixpair_positions_f32 position = simulation_view(&run->position);
-    struct fixpair_step_factors factors;
-    double from = run->epoch.velocity, unit = gravity->hubble / to, of[2];
-    TRY(displacement_units(of, run));
-    TRY(fixpair_kick_factors(&factors, &gravity->cosmology, gravity->stepper, gravity->cola_exponent, from, to, run->epoch.position));
-    TRY(fixpair_kick_f32(&run->velocity, &position, run->mesh[0], run->mesh[1], run->mesh[2], fft->length, &fft->configuration,
-                         gravity->box_size, gravity->window, 0.0, from / to, unit * factors.factor, unit * factors.first * of[0],
-                         unit * factors.second * of[1], cola ? &run->displacements.first : NULL,
-                         cola ? &run->displacements.second : NULL, run->scratch, run->scratch_len, run->exec));
-    run->epoch.velocity = to;
-    return 0;
-}
-
-static int drift(struct simulation *run, double to) {
-    const struct fixpair_gravity *gravity = &run->gravity;
-    const int cola = gravity->stepper == FIXPAIR_STEPPER_COLA;
-    struct fixpair_positions_f32 velocity = simulation_view(&run->velocity);
-    struct fixpair_step_factors factors;
-    double at = run->epoch.velocity, of[2];
-    TRY(displacement_units(of, run));
-    TRY(fixpair_drift_factors(&factors, &gravity->cosmology, gravity->stepper, gravity->cola_exponent, run->epoch.position, to, at));
-    TRY(fixpair_drift_f32(&run->position, &velocity, gravity->box_size, factors.factor * at / gravity->hubble, factors.first * of[0],
-                          factors.second * of[1], cola ? &run->displacements.first : NULL, cola ? &run->displacements.second : NULL,
-                          run->exec));
-    run->epoch.position = to;
-    return 0;
-}
-
-/* A leapfrog of any kind: velocities are half a step behind positions on the way, and meet them at the end. */
-static int run_by_hand(struct simulation *run) {
-    const double *a = run->scale_factors;
-    size_t last = (size_t)run->choice.steps;
-    TRY(simulation_begin(run));
-    for (size_t i = 0; i < last; i++) {
-        TRY(compute_force(run));
-        TRY(kick(run, sqrt(a[i] * a[i + 1])));
-        TRY(drift(run, a[i + 1]));
-    }
-    TRY(compute_force(run));
-    return kick(run, a[last]);
-}
-
 static int check_by_hand(struct laboratory *lab) {
     const struct simulation *simulation = &lab->simulation;
     size_t size = 3 * simulation->count * sizeof(float);
     struct simulation run;
-    int broken = simulation_open(&run, &simulation->choice, &lab->exec) != 0 || run_by_hand(&run) != 0;
+    int broken = simulation_open(&run, &simulation->choice, &lab->exec) != 0 || simulation_begin(&run) != 0 || by_hand_evolve(&run) != 0;
     if (!broken) {
         int same = memcmp(run.memory[0], simulation->memory[0], size) == 0 && memcmp(run.memory[1], simulation->memory[1], size) == 0;
         lab->failures += claim(same, "by hand, kernel by kernel: the same particles, bit for bit");
