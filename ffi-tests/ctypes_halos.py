@@ -71,7 +71,7 @@ def halos(twin):
     twin.case("halos", first(without, count), first(found, count))
     twin.case("halo_sums", first(*sums_of(twin, named, places, speeds, None, 0)))
     centres = array([x for halo in found.array[:count] for x in halo.centre])
-    radii = array([2.0 * halo.radius for halo in found.array[:count]])
+    radii = array([min(2.0 * halo.radius, 20.0) for halo in found.array[:count]])
     layout = twin.layout("spheres_scratch", PARTICLES)
     scratch, densities, spheres = scratch_of(layout), array(list(DENSITIES)), Buffer(Sphere, 3 * count)
     twin.call("refine_centres", centres.start, count, radii.start, positions(places), BOX, 0.975, 5, scratch.start, scratch.size,
