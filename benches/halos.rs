@@ -148,3 +148,103 @@ fn to<T: Real>(x: &[f64]) -> Vec<T> {
 fn length() -> f64 {
     linking_length(0.2, BOX_SIZE, TOTAL).unwrap()
 }
+
+fn kernels<T: Real>(c: &mut Criterion, real: &str) {
+    let pool = Threads::new(2).unwrap();
+    let sets = [("clustered", clustered()), ("shuffled", shuffled()), ("uniform", uniform())];
+    for (name, x) in &sets {
+        let x = to::<T>(x);
+        let position = Positions::triples(&x).unwrap();
+        let particles = position.len();
+        let mut labels = vec![0; particles];
+        let mut found = vec![Halo::default(); particles / 20];
+        let layouts =
+            [fof_labels_scratch::<T>(particles), halos_scratch(particles), spheres_scratch::<T>(particles)];
+        let [mut fof, mut list, mut grow] = layouts.map(|layout| Memory::new(layout.unwrap()));
+        let mass = particle_mass(0.27, BOX_SIZE, TOTAL).unwrap();
+        for (threads, exec) in [(1, &Serial as &dyn Exec), (2, &pool)] {
+            let mut group = c.benchmark_group(format!("{real}_{name}_{threads}"));
+            group.sample_size(10).throughput(Throughput::Elements(particles as u64));
+            group.bench_function("fof_labels", |b| {
+                b.iter(|| {
+                    let labels = black_box(&mut labels);
+                    fof_labels(labels, &position, None, BOX_SIZE, length(), fof.bytes(), exec).unwrap();
+                });
+            });
+            let mut count = 0;
+            group.bench_function("halos", |b| {
+                b.iter(|| {
+                    let velocity = Some(&position);
+                    let scratch = list.bytes();
+                    count =
+                        halos(&mut found, &labels, &position, velocity, BOX_SIZE, 20, mass, scratch, exec)
+                            .unwrap();
+                });
+            });
+            let first: Vec<[f64; 3]> = found[..count].iter().map(|halo| halo.centre).collect();
+            let radii: Vec<f64> = found[..count].iter().map(|halo| 2.0 * halo.radius).collect();
+            let mut centres = first.clone();
+            group.bench_function("refine_centres", |b| {
+                b.iter(|| {
+                    centres.copy_from_slice(&first);
+                    let shrink = Shrink { factor: 0.9, n_min: 20 };
+                    refine_centres(&mut centres, &radii, &position, BOX_SIZE, &shrink, grow.bytes(), exec)
+                        .unwrap();
+                });
+            });
+            let mut around = vec![Sphere::default(); count];
+            let density =
+                Density { box_size: BOX_SIZE, particles_total: TOTAL, particle_mass: mass, n_min: 20 };
+            group.bench_function("spheres", |b| {
+                b.iter(|| {
+                    spheres(&mut around, &centres, &[200.0], &position, &density, grow.bytes(), exec)
+                        .unwrap();
+                });
+            });
+            group.finish();
+        }
+    }
+}
+
+/// kdcount and this library, clustered, one thread: seconds, medians of five of ours, and the ratio.
+fn peers(_: &mut Criterion) {
+    let Some(python) = std::env::var_os("FIXPAIR_BENCH_PYTHON") else { return };
+    let x = clustered();
+    let file = std::env::temp_dir().join("fixpair_bench_fof.f64");
+    std::fs::write(&file, x.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>()).unwrap();
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/fof.py");
+    let arguments = [BOX_SIZE, length()].map(|x| x.to_string());
+    let output = Command::new(python).arg(script).arg(&file).args(arguments).output().unwrap();
+    std::fs::remove_file(&file).unwrap();
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    for [name, theirs, groups] in text.lines().filter_map(|line| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        <[&str; 3]>::try_from(words).ok()
+    }) {
+        let (Ok(theirs), Ok(groups)) = (theirs.parse::<f64>(), groups.parse::<usize>()) else { continue };
+        let position = Positions::triples(&x).unwrap();
+        let mut labels = vec![0; position.len()];
+        let mut scratch = Memory::new(fof_labels_scratch::<f64>(position.len()).unwrap());
+        let mut seconds = [0.0; 5].map(|_: f64| {
+            let start = Instant::now();
+            fof_labels(&mut labels, &position, None, BOX_SIZE, length(), scratch.bytes(), &Serial).unwrap();
+            start.elapsed().as_secs_f64()
+        });
+        seconds.sort_by(f64::total_cmp);
+        let ours = labels.iter().enumerate().filter(|&(i, &label)| i as u64 == label).count();
+        println!(
+            "{name}: {theirs:.3} s, {groups} groups; fixpair {:.3} s, {ours} groups: x{:.1}",
+            seconds[2],
+            theirs / seconds[2]
+        );
+    }
+}
+
+fn all(c: &mut Criterion) {
+    peers(c);
+    kernels::<f32>(c, "f32");
+    kernels::<f64>(c, "f64");
+}
+
+criterion_group!(benches, all);
+criterion_main!(benches);

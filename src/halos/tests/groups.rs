@@ -135,8 +135,8 @@ fn labels_do_not_depend_on_threads() {
 #[test]
 fn thousands_of_particles_agree_with_all_pairs() {
     let mut random = Random(6);
-    let places = clumps::<f32>(&mut random, 8000);
-    for length in [0.3, 0.03, 0.01, 0.003, 1e-4, 2e-6] {
+    let places = clumps::<f32>(&mut random, 4000);
+    for length in [0.3, 0.03, 0.01, 1e-4] {
         agrees(&places, 1.0, length, "thousands");
     }
 }
@@ -208,7 +208,7 @@ fn what_is_wrong_is_refused() {
     let layout = fof_labels_scratch::<f32>(4).unwrap();
     let mut memory = Memory::new(layout);
     let mut labels = [7; 4];
-    let mut call = |labels: &mut [u64], ids: Option<&[u64]>, scratch: &mut [u8]| {
+    let call = |labels: &mut [u64], ids: Option<&[u64]>, scratch: &mut [u8]| {
         fof_labels(labels, &positions, ids, 1.0, 0.1, scratch, &Serial)
     };
     assert_eq!(call(&mut labels[..3], None, memory.get()), Err(Error::Length));

@@ -28,8 +28,8 @@ fn spheres_are_those_of_all_distances() {
     let mut random = Random(31);
     let deltas = [200.0, 30.0, 2.0];
     let (mut found, mut thin) = (0, 0);
-    for _ in 0..150 {
-        let particles = 1 + random.below(800);
+    for _ in 0..80 {
+        let particles = 1 + random.below(500);
         let places = clumps::<f32>(&mut random, particles);
         let centres: Vec<[f64; 3]> = (0..10)
             .map(|i| {
@@ -53,7 +53,7 @@ fn spheres_are_those_of_all_distances() {
             thin += usize::from(expected.is_none());
         }
     }
-    assert!(found > 1000 && thin > 500, "{found} dense, {thin} not");
+    assert!(found > 500 && thin > 300, "{found} dense, {thin} not");
 }
 
 #[test]

@@ -162,7 +162,9 @@ fn merged_labels_are_the_smallest_that_pairs_connect() {
             for pair in &pairs {
                 let at = pair.map(|label| expected.iter().position(|entry| entry[0] == label).unwrap());
                 let least = at.map(|i| expected[i][1]).into_iter().min().unwrap();
-                at.map(|i| expected[i][1] = least);
+                for i in at {
+                    expected[i][1] = least;
+                }
             }
         }
         assert_eq!(map[..entries], expected);

@@ -4,8 +4,10 @@ mod bits;
 mod drifts;
 mod evolve;
 mod factors;
+mod force;
 mod interlacing;
 mod kicks;
+mod pair_force;
 mod regions;
 
 use std::vec;
