@@ -159,7 +159,7 @@ static int32_t interrupt(void *context, const fixpair_progress *progress) {
 
 /* The particles on their way to today, and their groups. */
 static void evolve(const fixpair_fft_f32 *fft, const fixpair_components_f32 *x, const fixpair_components_f32 *v) {
-    enum { STEPS = 6, LEAST = 8 };
+    enum { STEPS = 6, LEAST = 2 };
     static uint64_t labels[PARTICLES];
     static fixpair_halo halos[PARTICLES / LEAST];
     static double centres[3 * PARTICLES / LEAST];
@@ -199,7 +199,8 @@ static void evolve(const fixpair_fft_f32 *fft, const fixpair_components_f32 *x, 
     speeds.x = velocity;
     speeds.y = velocity + 1;
     speeds.z = velocity + 2;
-    must(fixpair_linking_length(&length, 0.4, 1000.0, PARTICLES), 36);
+    /* Particles 60 Mpc/h apart make no halos: neighbours must do. */
+    must(fixpair_linking_length(&length, 1.0, 1000.0, PARTICLES), 36);
     must(fixpair_fof_labels_scratch_f32(&layout, PARTICLES), 37);
     scratch = piece(layout);
     must(fixpair_fof_labels_f32(labels, PARTICLES, &places, NULL, 0, 1000.0, length, scratch, layout.size, NULL), 38);
