@@ -188,7 +188,7 @@ static void X(kicks_on_slabs)(const fixpair_exec *exec) {
         size_t wide_length = wide[rank].count[0] * wide[rank].count[1] * wide[rank].count[2];
         X(fixpair_positions) position = X(view)(places[rank], count[rank]);
         REAL *ghost[3], *speeds = X(numbers)(3 * count[rank], 70000 * (size_t)rank, 300.0);
-        X(fixpair_vectors) velocity;
+        X(fixpair_components) velocity;
         fixpair_layout layout;
         void *scratch;
         for (axis = 0; axis < 3; axis++) {

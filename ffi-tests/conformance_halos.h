@@ -135,7 +135,7 @@ static void X(spheres)(const X(fixpair_positions) *position, const fixpair_halo 
     size_t i;
     for (i = 0; i < count; i++) {
         memcpy(centres + 3 * i, halos[i].centre, sizeof halos[i].centre);
-        radii[i] = 2.0 * halos[i].radius;
+        radii[i] = 2.0 * halos[i].radius < 20.0 ? 2.0 * halos[i].radius : 20.0;
     }
     MUST(X(fixpair_spheres_scratch)(&layout, CROWD));
     scratch = take(layout.size);

@@ -36,6 +36,23 @@ Positions = structure("Positions", x=c_void_p, y=c_void_p, z=c_void_p, stride=c_
 Binning = structure("Binning", struct_size=c_size_t, edges=c_void_p, edges_len=c_size_t, second=c_int32,
                     orders=ctypes.c_uint32, second_edges=c_void_p, second_edges_len=c_size_t, axis=c_double * 3)
 Bin = structure("Bin", count=c_uint64, first=c_double, second=c_double)
+StepFactors = structure("StepFactors", factor=c_double, first=c_double, second=c_double)
+ForceLaw = structure("ForceLaw", struct_size=c_size_t, laplacian=c_int32, gradient=c_int32, window=c_int32,
+                     window_power=c_int32, split_scale=c_double)
+Gravity = structure("Gravity", struct_size=c_size_t, cosmology=Cosmology, box_size=c_double, hubble=c_double, law=ForceLaw,
+                    cola_exponent=c_double, stepper=c_int32, window=c_int32)
+Epoch = structure("Epoch", position=c_double, velocity=c_double)
+Displacements = structure("Displacements", first=Positions, second=Positions, scale_factor=c_double)
+Outputs = structure("Outputs", scale_factors=c_void_p, length=c_size_t, position=Components, velocity=Components)
+Progress = structure("Progress", event=c_int32, step=c_size_t, steps=c_size_t, output=c_size_t, epoch=Epoch)
+Observe = ctypes.CFUNCTYPE(c_int32, c_void_p, ctypes.POINTER(Progress))
+Observer = structure("Observer", context=c_void_p, observe=Observe)
+Halo = structure("Halo", label=c_uint64, members=c_uint64, mass=c_double, centre=c_double * 3, velocity=c_double * 3,
+                 radius=c_double, extent=c_double * 3, velocity_dispersion=c_double)
+HaloSums = structure("HaloSums", label=c_uint64, members=c_uint64, reference=c_double * 3, reference_velocity=c_double * 3,
+                     position=c_double * 3, position_squared=c_double, velocity=c_double * 3, velocity_squared=c_double,
+                     low=c_double * 3, high=c_double * 3)
+Sphere = structure("Sphere", members=c_uint64, mass=c_double, radius=c_double)
 
 CONFIGURATION, FOURIER = 0, 1
 NORMAL, FIXED, FIXED_TO_MEAN = 0, 1, 2
@@ -49,6 +66,11 @@ NGP, CIC, TSC, PCS = 1, 2, 3, 4
 COSINE, PARALLEL = 1, 2
 WINDOW, ALIASED = 16, 32
 BISPECTRUM_WORDS = 42
+EXACT, TWO_POINT, FOUR_POINT = 0, 1, 2
+FASTPM, LEAPFROG, COLA = 0, 1, 2
+COLA_EXPONENT = -2.5
+EVENT_STEP, EVENT_OUTPUT = 0, 1
+STOPPED = -18
 
 # What a letter of a signature stands for: p pointer, n size, d double, i int32, w uint32, u uint64.
 LETTERS = {"p": c_void_p, "n": c_size_t, "d": c_double, "i": c_int32, "w": ctypes.c_uint32, "u": c_uint64}
@@ -67,6 +89,10 @@ SIGNATURES = {
     "compensate_scratch": "pp",
     "closed_triangle_count": "ppnp", "closed_triangles": "pnpnp", "squeezed_triangles": "pnnn",
     "triangle_counts_scratch": "ppnpnn", "triangle_counts": "ppnpnnpnp", "bispectrum_values": "pnpn",
+    "force_law_init": "p", "force_scratch": "pn", "gravity_init": "p", "drift_factors": "ppidddd", "kick_factors": "ppidddd",
+    "linear_steps": "pndd", "logarithmic_steps": "pndd", "linking_length": "pddu", "particle_mass": "pddu",
+    "overdensity": "pidpd", "fof_merge": "pnppn", "fof_relabel": "pnpnp", "halos_scratch": "pn", "halo_sums_merge": "pnpd",
+    "halos_finish": "pnppndud",
     "bispectrum_normalise": "ppnndd", "bispectrum_shot_noise": "ppnpnd", "bispectrum_reduced": "pppnpn",
 }
 TWINS = {
@@ -80,6 +106,10 @@ TWINS = {
     "shot_noise": "ppnnd", "correlation_modes": "ppniidppnp", "correlation_sums": "pnpnnpppnp",
     "compensate": "pnidppnp",
     "shell_modes": "ppnpuup", "bispectrum_sums_scratch": "ppnn", "bispectrum_sums": "pnpnpnnppnp",
+    "forces": "pppnppddpnp", "force": "ppnpnpddpnp", "potential": "pnppddpnp", "kick_scratch": "ppni",
+    "kick": "pppppnpdidddddpppnp", "drift": "ppddddppp", "evolve_scratch": "ppni", "evolve": "ppppppnppppnppnpp",
+    "fof_labels_scratch": "pn", "fof_labels": "pnppnddpnp", "halos": "pnppnppdudpnp", "halo_sums": "pnppnppdupnpnp",
+    "spheres_scratch": "pn", "spheres": "pnpnpnpdudupnp", "refine_centres": "pnppddupnp",
     "bispectrum_meshes": "ppn", "bispectrum_scratch": "ppnn", "bispectrum": "pnppnpnpnppnpnp",
 }
 SIGNATURES.update({f"{name}_{real}": signature for name, signature in TWINS.items() for real in ("f32", "f64")})

@@ -1,5 +1,5 @@
 /*
- * One initial condition where there is nothing, and its power spectrum and bispectrum: no C library, no heap, no threads, no main. Linux on
+ * One initial condition where there is nothing, its power spectrum and bispectrum, and the halos that it grows into: no C library, no heap, no threads, no main. Linux on
  * x86-64; exits with 0 if the particles and their numbers are there, else with a number that says where it stopped.
  */
 #define FIXPAIR_NO_THREADS
@@ -152,6 +152,78 @@ static void measure(const fixpair_fft_f32 *fft) {
     }
 }
 
+/* Stops a run once, to go on. */
+static int32_t interrupt(void *context, const fixpair_progress *progress) {
+    return progress->step == 2 && ++*(int *)context == 1;
+}
+
+/* The particles on their way to today, and their groups. */
+static void evolve(const fixpair_fft_f32 *fft, const fixpair_components_f32 *x, const fixpair_components_f32 *v) {
+    enum { STEPS = 6, LEAST = 2 };
+    static uint64_t labels[PARTICLES];
+    static fixpair_halo halos[PARTICLES / LEAST];
+    static double centres[3 * PARTICLES / LEAST];
+    static fixpair_sphere spheres[PARTICLES / LEAST];
+    fixpair_gravity gravity;
+    fixpair_epoch epoch;
+    fixpair_layout layout;
+    fixpair_observer observer;
+    fixpair_positions_f32 places, speeds;
+    double steps[STEPS], length, mass, delta;
+    float *mesh[3];
+    size_t count, i;
+    int stops = 0, axis;
+    void *scratch;
+    must(fixpair_gravity_init(&gravity), 31);
+    must(fixpair_logarithmic_steps(steps, STEPS, 1.0 / 33.0, 1.0), 32);
+    must(fixpair_evolve_scratch_f32(&layout, fft, PARTICLES, gravity.window), 33);
+    scratch = piece(layout);
+    for (axis = 0; axis < 3; axis++) {
+        mesh[axis] = room(fft->length * sizeof *mesh[axis]);
+    }
+    epoch.position = epoch.velocity = steps[0];
+    observer.context = &stops;
+    observer.observe = interrupt;
+    if (fixpair_evolve_f32(x, v, &epoch, &gravity, NULL, steps, STEPS, NULL, mesh[0], mesh[1], mesh[2], fft->length, fft, scratch,
+                           layout.size, &observer, NULL) != FIXPAIR_ERROR_STOPPED) {
+        leave(34);
+    }
+    must(fixpair_evolve_f32(x, v, &epoch, &gravity, NULL, steps, STEPS, NULL, mesh[0], mesh[1], mesh[2], fft->length, fft, scratch,
+                            layout.size, &observer, NULL), 35);
+    places.x = position;
+    places.y = position + 1;
+    places.z = position + 2;
+    places.stride = 3;
+    places.length = PARTICLES;
+    speeds = places;
+    speeds.x = velocity;
+    speeds.y = velocity + 1;
+    speeds.z = velocity + 2;
+    /* Particles 60 Mpc/h apart make no halos: neighbours must do. */
+    must(fixpair_linking_length(&length, 1.0, 1000.0, PARTICLES), 36);
+    must(fixpair_fof_labels_scratch_f32(&layout, PARTICLES), 37);
+    scratch = piece(layout);
+    must(fixpair_fof_labels_f32(labels, PARTICLES, &places, NULL, 0, 1000.0, length, scratch, layout.size, NULL), 38);
+    must(fixpair_particle_mass(&mass, 0.27, 1000.0, PARTICLES), 39);
+    must(fixpair_halos_scratch(&layout, PARTICLES), 40);
+    scratch = piece(layout);
+    must(fixpair_halos_f32(halos, PARTICLES / LEAST, &count, labels, PARTICLES, &places, &speeds, 1000.0, LEAST, mass, scratch,
+                           layout.size, NULL), 41);
+    if (count == 0) {
+        leave(42);
+    }
+    for (i = 0; i < count; i++) {
+        for (axis = 0; axis < 3; axis++) {
+            centres[3 * i + (size_t)axis] = halos[i].centre[axis];
+        }
+    }
+    must(fixpair_overdensity(&delta, FIXPAIR_OVERDENSITY_VIRIAL, 0.0, &gravity.cosmology, 1.0), 43);
+    must(fixpair_spheres_scratch_f32(&layout, PARTICLES), 44);
+    scratch = piece(layout);
+    must(fixpair_spheres_f32(spheres, count, centres, count, &delta, 1, &places, 1000.0, PARTICLES, mass, 1, scratch, layout.size,
+                             NULL), 45);
+}
+
 static void make(void) {
     fixpair_conditions conditions;
     fixpair_fft_f32 fft;
@@ -190,6 +262,7 @@ static void make(void) {
         leave(9);
     }
     measure(&fft);
+    evolve(&fft, &x, &v);
     leave(0);
 }
 

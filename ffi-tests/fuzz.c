@@ -210,7 +210,6 @@ int main(void) {
     double *data = (double *)take((2 * LENGTH + 2 * VALUES) * sizeof *data);
     float *single = (float *)take(LENGTH * sizeof *single);
     double *memory = (double *)take(BYTES);
-    void *space = take(SPACE);
     int64_t *sums = (int64_t *)take(WORDS * sizeof *sums);
     fixpair_conditions conditions;
     fixpair_fft_f64 fft;
@@ -232,7 +231,7 @@ int main(void) {
         clouds(data, single, memory);
         estimates(data, single, memory, sums);
         forces(data, single, memory);
-        groups(data, space);
+        groups(data, memory);
         if (round % 8 == 0) {
             universes(data, scratch, layout.size, &fft);
             bispectra(data, memory, sums, &fft);
@@ -242,13 +241,11 @@ int main(void) {
         CHECK_CANARIES(data);
         CHECK_CANARIES(single);
         CHECK_CANARIES(memory);
-        CHECK_CANARIES(space);
         CHECK_CANARIES(sums);
     }
     give_back(data);
     give_back(single);
     give_back(memory);
-    give_back(space);
     give_back(sums);
     give_back(tables);
     give_back(workspace);

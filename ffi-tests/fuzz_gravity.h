@@ -181,24 +181,24 @@ static void groups(double *data, void *scratch) {
     sane(fixpair_halos_scratch(&layout, size()));
     sane(fixpair_spheres_scratch_f64(&layout, size()));
     sane(fixpair_fof_labels_f64(labels, position.length, &position, ids, word() % 2 ? position.length : 0, box,
-                                maybe(word() % 2 ? 5.0 : 40.0), scratch, SPACE, NULL));
+                                maybe(word() % 2 ? 5.0 : 40.0), scratch, BYTES, NULL));
     sane(fixpair_fof_merge(map, word() % 17, &entries, pairs, word() % 9));
     if (entries > 0) {
         sane(fixpair_fof_relabel(labels, position.length, map, entries, NULL));
     }
     sane(fixpair_halos_f64(halos, word() % (CLOUD + 1), &count, labels, position.length, &position, word() % 2 ? &velocity : NULL,
-                           box, word() % 4, mass, scratch, SPACE, NULL));
+                           box, word() % 4, mass, scratch, BYTES, NULL));
     CHECK(count <= CLOUD);
     count = 0;
     sane(fixpair_halo_sums_f64(sums, word() % (CLOUD + 1), &count, labels, position.length, &position,
-                               word() % 2 ? &velocity : NULL, box, word() % 4, map, entries, scratch, SPACE, NULL));
+                               word() % 2 ? &velocity : NULL, box, word() % 4, map, entries, scratch, BYTES, NULL));
     for (i = 0; i < count; i++) {
         sums[i].label = word() % 4;
         sums[i].position[0] = maybe(sums[i].position[0]);
     }
     sane(fixpair_halo_sums_merge(sums, count, &entries, box));
     sane(fixpair_halos_finish(halos, CLOUD, &entries, sums, count, box, word() % 4, mass));
-    sane(fixpair_refine_centres_f64(centres, 4, radii, &position, box, maybe(0.9), word() % 4, scratch, SPACE, NULL));
+    sane(fixpair_refine_centres_f64(centres, 4, radii, &position, box, maybe(0.9), word() % 4, scratch, BYTES, NULL));
     sane(fixpair_spheres_f64(spheres, 8, centres, 4, densities, 2, &position, box, word() % 8 ? CLOUD : word(), mass, word() % 4,
-                             scratch, SPACE, NULL));
+                             scratch, BYTES, NULL));
 }

@@ -68,6 +68,7 @@ void runs(const fixpair_exec *exec) {
     }
     fixpair_gravity gravity;
     must(fixpair_gravity_init(&gravity));
+    must(fixpair_force_law_init(&gravity.law));
     gravity.box_size = BOX;
     std::vector<double> steps(5), reached;
     must(fixpair_logarithmic_steps(steps.data(), steps.size(), 0.125, 1.0));

@@ -8,6 +8,8 @@ import re
 import sys
 
 import ctypes_estimate
+import ctypes_gravity
+import ctypes_halos
 import fixpair_ctypes as fixpair
 from ctypes_check import (BOX, FINE, FINER, N, PADDING, ROWS, SEED, Buffer, array, check, claims, doubles, elements,
                           failures, fnv, integers, made, noise, parallel_for, triples)
@@ -263,14 +265,15 @@ class Twin:
 OPTIONAL = {"white_modes": [3, 4, 6], "fft_init": [6], "initial_conditions_scratch": [3], "initial_conditions": [4, 7],
             "displace": [3, 10], "exec_self_test": [0], "deposit": [4, 11], "read_out": [11], "power_sums": [7, 12],
             "shot_noise": [1], "correlation_modes": [1, 9], "correlation_sums": [9], "closed_triangle_count": [3],
-            "closed_triangles": [4], "triangle_counts": [8], "bispectrum_sums": [10], "bispectrum": [2, 14]}
+            "closed_triangles": [4], "triangle_counts": [8], "bispectrum_sums": [10], "bispectrum": [2, 14], "kick": [14, 15, 18],
+            "drift": [6, 7, 8], "evolve": [4, 7, 15, 16], "halos": [6, 12], "halo_sums": [6, 13], "fof_labels": [9]}
 EXEC = ("particle_ids", "potential_amplitude_table", "alpha_table", "impose", "modes_from_field", "scale_modes",
         "copy_modes", "add_local", "second_order_source", "displacement", "add_cells", "copy_cells", "interlace",
-        "shell_modes", "compensate")
+        "shell_modes", "compensate", "forces", "force", "potential", "fof_relabel", "spheres", "refine_centres")
 # Sizes that follow a pointer and are not its length: sides, an axis, a number of threads.
 NO_LENGTH = {"mode_table_length": 1, "fft_tables_scratch": 1, "fft_scratch": 1, "brick_whole": 1, "brick_slab": 1,
              "brick_transposed_slab": 1, "threads_create": 2, "displacement": 5, "displace": 6, "deposit_scratch": 2,
-             "read_out_scratch": 2}
+             "read_out_scratch": 2, "force": 4, "kick_scratch": 2, "evolve_scratch": 2}
 # Where more than a few are refused as a length.
 AT_MOST = {"power_sums": 3, "correlation_sums": 3}
 
@@ -329,6 +332,8 @@ def main(path, vectors, header):
         universe.scalars()
         universe.cosmologies()
         ctypes_estimate.bins(universe)
+        ctypes_gravity.steps_in_time(universe)
+        ctypes_halos.scalars(universe)
         for suffix in ("f32", "f64"):
             twin = Twin(universe, suffix)
             twin.transforms()
@@ -337,8 +342,14 @@ def main(path, vectors, header):
             twin.universes()
             ctypes_estimate.particles(twin)
             ctypes_estimate.Estimates(twin).run()
+            ctypes_gravity.gravity(twin)
+            ctypes_halos.halos(twin)
         if run is exec_of_pool:
             ctypes_estimate.physics(library, run)
+            ctypes_gravity.growing_mode(library, run)
+            for suffix in ("f32", "f64"):
+                ctypes_halos.two_clumps(Twin(universe, suffix))
+            ctypes_gravity.attraction(twin)
         check(all(buffer.canaries_live() for buffer in Buffer.everything), "canaries live")
         if run is exec_of_pool:
             # The calls that refusals() repeats are those of the second round.

@@ -55,9 +55,10 @@ fn laws() -> [ForceLaw; 3] {
 pub(crate) fn time_cases(cases: &mut Cases) {
     let c = Cosmology::goliat();
     let members = [c.omega_m, c.omega_de, c.omega_r, c.omega_b, c.h, c.n_s, c.w0, c.wa, c.t_cmb];
-    let law = Hash::new().integers(&[0, 0, 0, 2]).doubles(&[0.0]);
-    cases.add("force_law_init", law);
-    let gravity = law.doubles(&members).doubles(&[1000.0, 100.0, COLA_EXPONENT]).integers(&[0, 2]);
+    // Exact derivatives; a run begins with the four-point gradient.
+    let law = |gradient| Hash::new().integers(&[0, gradient, 0, 2]).doubles(&[0.0]);
+    cases.add("force_law_init", law(0));
+    let gravity = law(2).doubles(&members).doubles(&[1000.0, 100.0, COLA_EXPONENT]).integers(&[0, 2]);
     cases.add("gravity_init", gravity);
     let layout = force_scratch(N).expect("scratch");
     cases.add("force_scratch", Hash::new().integers(&[layout.size as u64, layout.align as u64]));

@@ -136,7 +136,7 @@ pub(crate) fn halo_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
     let layout = spheres_scratch::<T>(PARTICLES).expect("scratch");
     let mut memory = Memory::new(layout);
     let mut centres: Vec<[f64; 3]> = list[..count].iter().map(|halo| halo.centre).collect();
-    let radii: Vec<f64> = list[..count].iter().map(|halo| 2.0 * halo.radius).collect();
+    let radii: Vec<f64> = list[..count].iter().map(|halo| (2.0 * halo.radius).min(20.0)).collect();
     let shrink = Shrink { factor: 0.975, n_min: 5 };
     let scratch = memory.bytes(layout.size);
     refine_centres(&mut centres, &radii, &position, BOX, &shrink, scratch, &Serial).expect("centres");

@@ -90,6 +90,9 @@
 /* A particle lies outside the brick of cells, or its window reaches beyond it. */
 #define FIXPAIR_ERROR_OUTSIDE (-17)
 
+/* The host's observer asked a run to stop; it can go on. */
+#define FIXPAIR_ERROR_STOPPED (-18)
+
 /* Real cells. */
 #define FIXPAIR_SPACE_CONFIGURATION 0
 
@@ -167,6 +170,33 @@
 
 /* Piecewise cubic spline: p = 4. */
 #define FIXPAIR_WINDOW_PCS 4
+
+/* Spectral: i k and k^2. */
+#define FIXPAIR_DIFFERENCE_EXACT 0
+
+/* The nearest neighbour on either side: i sin(theta)/H and (2/H)^2 sin^2(theta/2), theta = k_a H, H = L/n. Second order. */
+#define FIXPAIR_DIFFERENCE_TWO_POINT 1
+
+/* Two neighbours on either side: i (8 sin theta - sin 2 theta)/(6 H) and (15 - 16 cos theta + cos 2 theta)/(6 H^2). Fourth order. */
+#define FIXPAIR_DIFFERENCE_FOUR_POINT 2
+
+/* FastPM (Feng et al. 2016, arXiv:1603.00476): exact for growing modes of linear theory, in steps of any length. */
+#define FIXPAIR_STEPPER_FASTPM 0
+
+/* Plain leapfrog: exact for free motion and constant forces. */
+#define FIXPAIR_STEPPER_LEAPFROG 1
+
+/* COLA (Tassev, Zaldarriaga & Eisenstein 2013, arXiv:1301.0322): exact for second-order Lagrangian theory. */
+#define FIXPAIR_STEPPER_COLA 2
+
+/* The exponent n_LPT of COLA that its authors recommend. */
+#define FIXPAIR_COLA_EXPONENT (-2.5)
+
+/* Positions have reached the next scale factor of the list. */
+#define FIXPAIR_EVENT_STEP 0
+
+/* An output is in its arrays. */
+#define FIXPAIR_EVENT_OUTPUT 1
 
 /* So many times the mean density of matter: 200 for 200b. */
 #define FIXPAIR_OVERDENSITY_MEAN 0
@@ -530,6 +560,165 @@ typedef struct fixpair_positions_f32 {
   /* Particles. */
   size_t length;
 } fixpair_positions_f32;
+
+/*
+ * The force on a mesh: what the modes of the density contrast delta are multiplied by.
+ *
+ *    phi_k = - S(k) / (W(k)^power K2(k)) delta_k,    F_k = - i K_a(k) phi_k,    S(k) = exp(-k^2 r_s^2)
+ *
+ * K2 is minus the Laplacian, i K_a the gradient. The laws of known codes (EXACT stands for FIXPAIR_DIFFERENCE_EXACT, init for
+ * fixpair_force_law_init):
+ *
+ *    code                                 laplacian   gradient    window, power   split_scale
+ *    (init); FastPM naive                 EXACT       EXACT       none            0
+ *    FastPM 1_4, its default              EXACT       FOUR_POINT  none            0
+ *    FastPM 3_4                           TWO_POINT   FOUR_POINT  none            0
+ *    FastPM 5_4                           FOUR_POINT  FOUR_POINT  none            0
+ *    FastPM 3_2                           TWO_POINT   EXACT       none            0
+ *    FastPM eastwood                      EXACT       EXACT       CIC, 2          0
+ *    FastPM gadget                        EXACT       FOUR_POINT  CIC, 2          0
+ *    7-point Laplacian, centred differences
+ *    in real space                        TWO_POINT   TWO_POINT   none            0
+ *    Gadget-2's Tree-PM, its mesh part    EXACT       FOUR_POINT  CIC, 2          1.25 L/n
+ *
+ * A Tree-PM host adds 1/r^2 [erfc(r/2 r_s) + r/(r_s sqrt pi) exp(-r^2/4 r_s^2)] of Newton's force for near pairs (Springel 2005,
+ * astro-ph/0505010, eq. 19-21).
+ *
+ * Error of a pair's force between 3 and 3.5 cells, r.m.s. over places and directions (less beyond): with FOUR_POINT gradients CIC 5%, TSC and PCS 2.2%, 1.3% if
+ * the Laplacian is FOUR_POINT too; 1.8% for PCS with EXACT, FOUR_POINT, (PCS, 1), 0.53 L/n. An EXACT gradient rings along the axes unless a split smooths
+ * it, and more so with a window divided out. Tree and mesh with a split of 1.25 L/n: 1.2% (CIC), 0.4% (TSC, PCS), 0.03% with PCS and EXACT; 5 to 9% too
+ * weak if the window is not divided out.
+ *
+ * Fill it with fixpair_force_law_init, then change what is to be otherwise. Functions refuse with FIXPAIR_ERROR_VERSION, _CHOICE and
+ * _NOT_FINITE what these say, and with FIXPAIR_ERROR_RANGE a power that is not 1 to 4 or a negative split scale.
+ */
+typedef struct fixpair_force_law {
+  /* sizeof(fixpair_force_law). */
+  size_t struct_size;
+  /* K2: FIXPAIR_DIFFERENCE_... */
+  int32_t laplacian;
+  /* K_a: FIXPAIR_DIFFERENCE_... */
+  int32_t gradient;
+  /* W: 0 for none, or FIXPAIR_WINDOW_..., the window of the deposit. */
+  int32_t window;
+  /* 1 undoes the smoothing of the deposit, 2 that of the deposit and the read-out; means nothing without a window. */
+  int32_t window_power;
+  /* r_s, in the unit of the box: 0 for the whole force. A Gaussian filter of dispersion s in x is s/sqrt 2. */
+  double split_scale;
+} fixpair_force_law;
+
+/*
+ * What a drift or a kick adds: factor times velocity or force, and first psi1 + second psi2, with psi1 and psi2 the displacements of both orders over their
+ * growth, D and D2.
+ */
+typedef struct fixpair_step_factors {
+  /* d, of the velocity; or k, of the force. */
+  double factor;
+  /* Of the first-order displacement over D: 0 but for COLA. */
+  double first;
+  /* Of the second-order displacement over D2: 0 but for COLA. */
+  double second;
+} fixpair_step_factors;
+
+/* What moves the particles of a run. fixpair_gravity_init fills one. */
+typedef struct fixpair_gravity {
+  /* sizeof(fixpair_gravity). */
+  size_t struct_size;
+  /* Background. */
+  struct fixpair_cosmology cosmology;
+  /* Side of the box, in the unit of positions. */
+  double box_size;
+  /* H0 in the unit of velocities over that of positions: 100 for km/s and Mpc/h, 0.1 for km/s and kpc/h. */
+  double hubble;
+  /* From density to force. */
+  struct fixpair_force_law law;
+  /* n of FIXPAIR_STEPPER_COLA; not read by others. */
+  double cola_exponent;
+  /* FIXPAIR_STEPPER_FASTPM, _LEAPFROG or _COLA. */
+  int32_t stepper;
+  /* FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS, for the deposit of masses and the read-out of forces. */
+  int32_t window;
+} fixpair_gravity;
+
+/* The scale factors at which positions and velocities are. */
+typedef struct fixpair_epoch {
+  /* Of positions. */
+  double position;
+  /* Of velocities: the same at the start and the end of a run, half a step behind between its steps. */
+  double velocity;
+} fixpair_epoch;
+
+/*
+ * Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA needs. From
+ * modes: fixpair_displace_f64 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
+ */
+typedef struct fixpair_displacements_f64 {
+  /* First order, one a particle. */
+  struct fixpair_positions_f64 first;
+  /* Second order, one a particle; of length 0 for none. */
+  struct fixpair_positions_f64 second;
+  /* When. */
+  double scale_factor;
+} fixpair_displacements_f64;
+
+/* Where particles go at times between the steps of a run: each output overwrites the last. */
+typedef struct fixpair_outputs_f64 {
+  /* When: increasing, inside the list of steps. */
+  const double *scale_factors;
+  /* How many. */
+  size_t length;
+  /* One a particle. */
+  struct fixpair_components_f64 position;
+  /* Peculiar, one a particle. */
+  struct fixpair_components_f64 velocity;
+} fixpair_outputs_f64;
+
+/* What a run has just done. */
+typedef struct fixpair_progress {
+  /* FIXPAIR_EVENT_STEP or FIXPAIR_EVENT_OUTPUT. */
+  int32_t event;
+  /* Entry of the list of scale factors that positions have reached. */
+  size_t step;
+  /* The last entry of the list. */
+  size_t steps;
+  /* The output that was written; after a step, the one that comes next. */
+  size_t output;
+  /* Where the particles are: those of the run after a step, those of the output arrays after an output. */
+  struct fixpair_epoch epoch;
+} fixpair_progress;
+
+/* Who is told of progress. It may read the particles of the run and of the output arrays, and save them, but not change them. */
+typedef struct fixpair_observer {
+  /* Handed to observe as it is. */
+  void *context;
+  /* Returns 0 to go on; anything else ends the run after the step at hand with FIXPAIR_ERROR_STOPPED. */
+  int32_t (*observe)(void *context, const struct fixpair_progress *progress);
+} fixpair_observer;
+
+/*
+ * Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA needs. From
+ * modes: fixpair_displace_f32 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
+ */
+typedef struct fixpair_displacements_f32 {
+  /* First order, one a particle. */
+  struct fixpair_positions_f32 first;
+  /* Second order, one a particle; of length 0 for none. */
+  struct fixpair_positions_f32 second;
+  /* When. */
+  double scale_factor;
+} fixpair_displacements_f32;
+
+/* Where particles go at times between the steps of a run: each output overwrites the last. */
+typedef struct fixpair_outputs_f32 {
+  /* When: increasing, inside the list of steps. */
+  const double *scale_factors;
+  /* How many. */
+  size_t length;
+  /* One a particle. */
+  struct fixpair_components_f32 position;
+  /* Peculiar, one a particle. */
+  struct fixpair_components_f32 velocity;
+} fixpair_outputs_f32;
 
 /* One group. */
 typedef struct fixpair_halo {
@@ -1706,6 +1895,462 @@ fixpair_status_t fixpair_interlace_f32(float *modes,
                                        size_t len,
                                        const struct fixpair_brick *brick,
                                        const struct fixpair_exec *exec);
+
+/*
+ * Forces on a mesh
+ * ================
+ */
+
+/*
+ * The whole force, exact derivatives, no window; window_power is 2, so that setting window is enough to sharpen.
+ *
+ * Out: law
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT
+ */
+fixpair_status_t fixpair_force_law_init(struct fixpair_force_law *law);
+
+/*
+ * Scratch of fixpair_forces_*, fixpair_force_* and fixpair_potential_*: 24 n bytes.
+ *
+ * Out: scratch
+ * In:  n  cells on a side
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERFLOW
+ */
+fixpair_status_t fixpair_force_scratch(struct fixpair_layout *scratch, size_t n);
+
+/*
+ * From modes of the density to modes of F = -grad inverse-Laplacian delta, all three components in one pass.
+ *
+ * F is in the unit of L: for a linear field the Zel'dovich displacement x - q itself. The peculiar acceleration is 3/2 Omega_m H0^2/a^2 times F where F is in
+ * comoving lengths. A particle of weight w pulls another with w/mass L^3/(4 pi r^2). Read out with the window of the deposit, the force of any law
+ * conserves momentum to rounding, and no particle pulls itself. k = 0 and the Nyquist modes (|n_a| = n/2 on any axis: an odd derivative has no value
+ * there) become zero. A whole force, beside the density two meshes:
+ *
+ *    memset(x, 0, len * sizeof *x);
+ *    fixpair_deposit_f64(x, len, &cells, ...);
+ *    fft.forward(fft.context, x);
+ *    fixpair_forces_f64(x, y, z, len, &modes, &law, L, total_weight, ...);
+ *    fft.inverse(fft.context, x);                        and y, z
+ *    fixpair_read_out_f64(force_x, 3, x, len, &cells, ...);    and y, z, with the same window
+ *
+ * In/Out: x     len reals on the brick: F_k, the forward transform of deposited weights, not normalised; then the modes of F_x, whose inverse transform,
+ *               not normalised, is the force on the cells
+ * Out: y, z     len reals each: the modes of F_y and F_z
+ * In:  brick    of Fourier space
+ *      law
+ *      box_size L
+ *      mass     the sum of all weights, of all processes
+ *      scratch  scratch_len bytes, see fixpair_force_scratch
+ *      exec     or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _SCRATCH, _NOT_FINITE, FIXPAIR_ERROR_RANGE if the box or the mass is not
+ *          positive or L/(n mass) no normal number, or why brick or law are refused; after FIXPAIR_ERROR_HOOK the meshes are undefined.
+ *          Modes are not checked.
+ * Cost: one pass, which reads one mesh and writes three
+ */
+fixpair_status_t fixpair_forces_f64(double *x,
+                                    double *y,
+                                    double *z,
+                                    size_t len,
+                                    const struct fixpair_brick *brick,
+                                    const struct fixpair_force_law *law,
+                                    double box_size,
+                                    double mass,
+                                    void *scratch,
+                                    size_t scratch_len,
+                                    const struct fixpair_exec *exec);
+
+/* fixpair_forces_f64 in single precision: the same arithmetic in double precision, rounded once. */
+fixpair_status_t fixpair_forces_f32(float *x,
+                                    float *y,
+                                    float *z,
+                                    size_t len,
+                                    const struct fixpair_brick *brick,
+                                    const struct fixpair_force_law *law,
+                                    double box_size,
+                                    double mass,
+                                    void *scratch,
+                                    size_t scratch_len,
+                                    const struct fixpair_exec *exec);
+
+/*
+ * One component of fixpair_forces_f64, the same bits, to another mesh: for hosts with one mesh to spare beside the density.
+ *
+ * Out: out     len reals on the brick: the modes of F_axis
+ * In:  density  len reals: F_k as for fixpair_forces_f64
+ *      axis     0, 1, 2 for x, y, z
+ *      brick, law, box_size, mass, scratch, scratch_len, exec  as fixpair_forces_f64
+ * Returns: as fixpair_forces_f64, and FIXPAIR_ERROR_RANGE for another axis
+ * Cost: one pass, which reads one mesh and writes one
+ */
+fixpair_status_t fixpair_force_f64(double *out,
+                                   const double *density,
+                                   size_t len,
+                                   const struct fixpair_brick *brick,
+                                   size_t axis,
+                                   const struct fixpair_force_law *law,
+                                   double box_size,
+                                   double mass,
+                                   void *scratch,
+                                   size_t scratch_len,
+                                   const struct fixpair_exec *exec);
+
+/* fixpair_force_f64 in single precision. */
+fixpair_status_t fixpair_force_f32(float *out,
+                                   const float *density,
+                                   size_t len,
+                                   const struct fixpair_brick *brick,
+                                   size_t axis,
+                                   const struct fixpair_force_law *law,
+                                   double box_size,
+                                   double mass,
+                                   void *scratch,
+                                   size_t scratch_len,
+                                   const struct fixpair_exec *exec);
+
+/*
+ * The inverse Laplacian of delta: phi_k = -S/(W^power K2) delta_k, in the unit of L^2; the peculiar potential is 3/2 Omega_m H0^2/a times it.
+ *
+ * For hosts that take differences in real space, which gives them the force of the law with that gradient, and for energies. The law's own gradient means nothing here.
+ *
+ * In/Out: modes  len reals on the brick: F_k as for fixpair_forces_f64, then phi_k
+ * In:  brick, law, box_size, mass, scratch, scratch_len, exec  as fixpair_forces_f64
+ * Returns: as fixpair_forces_f64, and FIXPAIR_ERROR_RANGE if L^2/(n^2 mass) is no normal number
+ * Cost: one pass over one mesh
+ */
+fixpair_status_t fixpair_potential_f64(double *modes,
+                                       size_t len,
+                                       const struct fixpair_brick *brick,
+                                       const struct fixpair_force_law *law,
+                                       double box_size,
+                                       double mass,
+                                       void *scratch,
+                                       size_t scratch_len,
+                                       const struct fixpair_exec *exec);
+
+/* fixpair_potential_f64 in single precision. */
+fixpair_status_t fixpair_potential_f32(float *modes,
+                                       size_t len,
+                                       const struct fixpair_brick *brick,
+                                       const struct fixpair_force_law *law,
+                                       double box_size,
+                                       double mass,
+                                       void *scratch,
+                                       size_t scratch_len,
+                                       const struct fixpair_exec *exec);
+
+/*
+ * Kick and drift
+ * ==============
+ */
+
+/*
+ * Scratch of fixpair_kick_f64: with m = min(particles, 2^21) and t tiles, 32 m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1)
+ * bytes, each rounded up to 64; t is at most 4096 and depends on region and window alone. At most 75 MB, however many particles.
+ *
+ * Out: scratch
+ * In:  region     of configuration space; may run over the edge
+ *      particles  as many as will be passed, or more
+ *      window     FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _CHOICE, or why the region is refused
+ */
+fixpair_status_t fixpair_kick_scratch_f64(struct fixpair_layout *scratch,
+                                          const struct fixpair_brick *region,
+                                          size_t particles,
+                                          int32_t window);
+
+/* fixpair_kick_scratch_f64 in single precision: 16 m instead of 32 m, at most 41 MB. */
+fixpair_status_t fixpair_kick_scratch_f32(struct fixpair_layout *scratch,
+                                          const struct fixpair_brick *region,
+                                          size_t particles,
+                                          int32_t window);
+
+/*
+ * Kicks particles: u_i <- keep u_i + force F(x_i) + first psi1_i + second psi2_i, F(x_i) = sum_c W(x_c - x_i) F_c as fixpair_read_out_f64 has it.
+ *
+ * Peculiar velocities go from a0 to a1 with f of fixpair_kick_factors and H0 (100 for km/s and Mpc/h): keep = a0/a1, force = f.factor H0/a1, and for COLA
+ * first = f.first H0/(a1 D), second = f.second H0/(a1 D2), D and D2 (fixpair_growth_factors) of the time at which psi1 and psi2 are the displacements of
+ * both orders. Sums over the four terms are in double precision and rounded once; the result is the same, bit for bit, on any number of threads.
+ *
+ * In/Out: velocity  u; may share an array of structs with the positions
+ * In:  position
+ *      force_x, force_y, force_z  components of F, mesh_len reals each on the region, ghost planes filled (fixpair_copy_cells_f64)
+ *      region    of configuration space; may run over the edge (fixpair_brick_with_ghosts)
+ *      box_size, window, shift  as fixpair_deposit_f64
+ *      keep, force, first, second  factors
+ *      psi1      or NULL if first and second are 0
+ *      psi2      or NULL if second is 0
+ *      scratch   scratch_len bytes, see fixpair_kick_scratch_f64
+ *      exec      or NULL
+ * Returns: as fixpair_deposit_f64; FIXPAIR_ERROR_NULL also for displacements with a factor that are NULL; FIXPAIR_ERROR_NOT_FINITE for
+ *          box_size, shift and factors, or for a position, velocity, force or displacement, after which, as after FIXPAIR_ERROR_OUTSIDE,
+ *          some velocities are kicked, some not; after FIXPAIR_ERROR_HOOK they are undefined
+ * Cost: on one core in single precision with CIC 18 ns a particle if neighbours in memory are neighbours in space,
+ *       31 ns for a lattice displaced as far as clustering does, 50 ns in random order; with TSC 34, 51 and 80 ns
+ */
+fixpair_status_t fixpair_kick_f64(const struct fixpair_components_f64 *velocity,
+                                  const struct fixpair_positions_f64 *position,
+                                  const double *force_x,
+                                  const double *force_y,
+                                  const double *force_z,
+                                  size_t mesh_len,
+                                  const struct fixpair_brick *region,
+                                  double box_size,
+                                  int32_t window,
+                                  double shift,
+                                  double keep,
+                                  double force,
+                                  double first,
+                                  double second,
+                                  const struct fixpair_positions_f64 *psi1,
+                                  const struct fixpair_positions_f64 *psi2,
+                                  void *scratch,
+                                  size_t scratch_len,
+                                  const struct fixpair_exec *exec);
+
+/* fixpair_kick_f64 in single precision: velocities, positions, displacements and meshes. Factors stay double. */
+fixpair_status_t fixpair_kick_f32(const struct fixpair_components_f32 *velocity,
+                                  const struct fixpair_positions_f32 *position,
+                                  const float *force_x,
+                                  const float *force_y,
+                                  const float *force_z,
+                                  size_t mesh_len,
+                                  const struct fixpair_brick *region,
+                                  double box_size,
+                                  int32_t window,
+                                  double shift,
+                                  double keep,
+                                  double force,
+                                  double first,
+                                  double second,
+                                  const struct fixpair_positions_f32 *psi1,
+                                  const struct fixpair_positions_f32 *psi2,
+                                  void *scratch,
+                                  size_t scratch_len,
+                                  const struct fixpair_exec *exec);
+
+/*
+ * Moves particles: x_i <- x_i + factor u_i + first psi1_i + second psi2_i, wrapped into [0, L).
+ *
+ * With f of fixpair_drift_factors, and peculiar velocities of the time `at`: factor = f.factor at/H0, and for COLA first = f.first/D, second = f.second/D2, D,
+ * D2, psi1 and psi2 as for fixpair_kick_f64. Sums are in double precision and rounded once; no position becomes L itself. The result is the same, bit
+ * for bit, on any number of threads.
+ *
+ * In/Out: position  any finite numbers before; may share an array of structs with the velocities
+ * In:  velocity  u
+ *      box_size  L
+ *      factor, first, second
+ *      psi1      or NULL if first and second are 0
+ *      psi2      or NULL if second is 0
+ *      exec      or NULL
+ * Returns: 0, FIXPAIR_ERROR_LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE; FIXPAIR_ERROR_NULL also for displacements with a factor that are
+ *          NULL; FIXPAIR_ERROR_NOT_FINITE for box_size and factors, or for a particle that ends nowhere or more than 1e9 boxes away, after
+ *          which, as after FIXPAIR_ERROR_HOOK, positions are undefined
+ * Cost: one pass over positions, velocities and displacements
+ */
+fixpair_status_t fixpair_drift_f64(const struct fixpair_components_f64 *position,
+                                   const struct fixpair_positions_f64 *velocity,
+                                   double box_size,
+                                   double factor,
+                                   double first,
+                                   double second,
+                                   const struct fixpair_positions_f64 *psi1,
+                                   const struct fixpair_positions_f64 *psi2,
+                                   const struct fixpair_exec *exec);
+
+/* fixpair_drift_f64 in single precision: positions, velocities and displacements. Factors stay double. */
+fixpair_status_t fixpair_drift_f32(const struct fixpair_components_f32 *position,
+                                   const struct fixpair_positions_f32 *velocity,
+                                   double box_size,
+                                   double factor,
+                                   double first,
+                                   double second,
+                                   const struct fixpair_positions_f32 *psi1,
+                                   const struct fixpair_positions_f32 *psi2,
+                                   const struct fixpair_exec *exec);
+
+/*
+ * Steps in time
+ * =============
+ */
+
+/*
+ * The factors of a drift, for any integrator: x += factor v + first psi1 + second psi2.
+ *
+ * Canonical velocity v = a^2 dx/dt/H0 in the unit of x: v = a u/H0 for the peculiar velocity u (H0 = 100 km/s per Mpc/h). At its time `at`, usually between
+ * `from` and `to`, it is known; E = H/H0, D the growth factor, G = a^2 E f D:
+ *
+ *   FastPM    factor = [D(to) - D(from)]/G(at)
+ *   leapfrog  factor = int da/(a^3 E)
+ *   COLA      factor = int (a/at)^n da/(a^3 E), for v - v_LPT; first = D(to) - D(from) - factor G(at), second the same of D2
+ *
+ * psi1 and psi2 are the displacements of both orders over D and over D2, so psi1 = x - q today in linear theory; first and second are 0 but for COLA.
+ * v is the full velocity.
+ *
+ * Out: factors
+ * In:  cosmology
+ *      stepper        FIXPAIR_STEPPER_FASTPM, _LEAPFROG or _COLA
+ *      cola_exponent  n, usually FIXPAIR_COLA_EXPONENT; read for COLA only: not 0, within +-10
+ *      from, to, at   scale factors in 1e-5 ..= 10, in any order
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _CHOICE, _VERSION, _CONVERGENCE
+ * Cost: 0.4 ms
+ */
+fixpair_status_t fixpair_drift_factors(struct fixpair_step_factors *factors,
+                                       const struct fixpair_cosmology *cosmology,
+                                       int32_t stepper,
+                                       double cola_exponent,
+                                       double from,
+                                       double to,
+                                       double at);
+
+/*
+ * The factors of a kick, for any integrator: v += factor F + first psi1 + second psi2.
+ *
+ * F = -grad inverse-Laplacian delta, what fixpair_forces_f64 gives, is known at its time `at`; all else as for fixpair_drift_factors.
+ *
+ *   FastPM    factor = [G(to) - G(from)]/D(at)
+ *   leapfrog  factor = (3/2) Om int da/(a^2 E)
+ *   COLA      factor = (3/2) Om [to^n - from^n]/(n at^(n-1))/(at^2 E(at)), for F - F_LPT; first = G(to) - G(from) - factor D(at),
+ *             second = G2(to) - G2(from) - factor (D2 - D^2)(at), G2 = a^2 E f2 D2
+ *
+ * Peculiar velocities u go by u_new = (from/to) u + (H0/to) (factor F + ...).
+ *
+ * Out: factors
+ * In:  as for fixpair_drift_factors
+ * Returns: as fixpair_drift_factors
+ * Cost: 0.4 ms
+ */
+fixpair_status_t fixpair_kick_factors(struct fixpair_step_factors *factors,
+                                      const struct fixpair_cosmology *cosmology,
+                                      int32_t stepper,
+                                      double cola_exponent,
+                                      double from,
+                                      double to,
+                                      double at);
+
+/*
+ * Equal steps of the scale factor; the first and last entries are exactly `from` and `to`.
+ *
+ * Out: scale_factors  len values: len - 1 steps
+ * In:  from, to       0 < from < to
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH for fewer than two entries, _ALIGNMENT, _NOT_FINITE, _RANGE
+ */
+fixpair_status_t fixpair_linear_steps(double *scale_factors, size_t len, double from, double to);
+
+/*
+ * Equal steps of the logarithm of the scale factor; the first and last entries are exactly `from` and `to`.
+ *
+ * Out, In, Returns: as fixpair_linear_steps
+ */
+fixpair_status_t fixpair_logarithmic_steps(double *scale_factors, size_t len, double from, double to);
+
+/*
+ * Runs
+ * ====
+ */
+
+/*
+ * Fills the gravity: the GOLIAT cosmology, a box of 1000 Mpc/h, km/s, FastPM, cloud in cell, and the force law of fixpair_force_law_init but for a gradient of
+ * four points, which does not see the lattice of the particles: FastPM's own choice.
+ *
+ * Out: gravity
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT
+ */
+fixpair_status_t fixpair_gravity_init(struct fixpair_gravity *gravity);
+
+/*
+ * Scratch of fixpair_evolve_f64: the largest of those of the deposit, the kick and the forces, at most 75 MB however many particles.
+ *
+ * Out: scratch
+ * In:  fft        of a whole mesh
+ *      particles
+ *      window     FIXPAIR_WINDOW_...
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _CHOICE, _BRICK for a part of a mesh, or why the hook is refused
+ */
+fixpair_status_t fixpair_evolve_scratch_f64(struct fixpair_layout *scratch,
+                                            const struct fixpair_fft_f64 *fft,
+                                            size_t particles,
+                                            int32_t window);
+
+/* fixpair_evolve_scratch_f64 in single precision: at most 41 MB. */
+fixpair_status_t fixpair_evolve_scratch_f32(struct fixpair_layout *scratch,
+                                            const struct fixpair_fft_f32 *fft,
+                                            size_t particles,
+                                            int32_t window);
+
+/*
+ * Moves particles of one mass under their gravity, by the particle-mesh method, through a list of scale factors: from initial conditions to today.
+ *
+ * Step i has the force at a_i, kicks velocities to the middle of the next step, sqrt(a_i a_(i+1)), and drifts positions to a_(i+1) with them; at the
+ * end of the list velocities are kicked to its last entry. A list of N entries costs N forces. On the way velocities are half a step behind positions:
+ * `epoch` says where both are.
+ *
+ * Positions, velocities and epoch are the whole state. Save them in the observer, and a later call with them and the same list gives the same bits as a
+ * run that never stopped. Outputs up to the middle of the step at hand are then taken as written.
+ *
+ * Outputs at any time: with the force of the nearest step, positions drift from it to the output and velocities are kicked, in arrays of their own; no
+ * force is computed. They meet the steps exactly, with an error of second order between them.
+ *
+ * At two cells a particle or more (B >= 2) leave law.window at 0: a lattice of particles has modes of its own there, which sharpening would amplify. At
+ * one cell a particle FIXPAIR_WINDOW_PCS with law.window the same moves the largest modes to 1e-5.
+ *
+ * The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its transform,
+ * fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
+ *
+ * In/Out: position  wrapped into [0, L)
+ *      velocity  peculiar, a dx/dt, as fixpair_initial_conditions_f64 makes them
+ *      epoch     where they are: positions at an entry of the list, velocities there too or in the middle of the step before
+ * In:  gravity
+ *      displacements  for COLA; NULL for others
+ *      scale_factors  scale_factors_len entries, increasing, in 1e-5 ..= 10; see fixpair_linear_steps
+ *      outputs   or NULL
+ *      mesh1, mesh2, mesh3  mesh_len >= fft->length reals each, overwritten; aligned as the transform wants them
+ *      fft       of a whole mesh: side = particles a side times the mesh factor B, usually 1 or 2
+ *      scratch   scratch_len bytes, see fixpair_evolve_scratch_f64
+ *      observer  told of each step and output, and can stop the run; or NULL
+ *      exec      or NULL
+ * Returns: 0; FIXPAIR_ERROR_STOPPED if the observer asked for it: go on with the same list whenever you like; FIXPAIR_ERROR_NULL (also for COLA
+ *          without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE (also for a list that does not increase, an epoch or output outside
+ *          it, and no particles), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were, unless
+ *          NOT_FINITE comes from a velocity or displacement, or from particles that move beyond all numbers. After that and after
+ *          FIXPAIR_ERROR_HOOK they are undefined
+ * Cost: a step is four transforms, a deposit, a kick and a drift; memory beyond the particles: three meshes
+ */
+fixpair_status_t fixpair_evolve_f64(const struct fixpair_components_f64 *position,
+                                    const struct fixpair_components_f64 *velocity,
+                                    struct fixpair_epoch *epoch,
+                                    const struct fixpair_gravity *gravity,
+                                    const struct fixpair_displacements_f64 *displacements,
+                                    const double *scale_factors,
+                                    size_t scale_factors_len,
+                                    const struct fixpair_outputs_f64 *outputs,
+                                    double *mesh1,
+                                    double *mesh2,
+                                    double *mesh3,
+                                    size_t mesh_len,
+                                    const struct fixpair_fft_f64 *fft,
+                                    void *scratch,
+                                    size_t scratch_len,
+                                    const struct fixpair_observer *observer,
+                                    const struct fixpair_exec *exec);
+
+/* fixpair_evolve_f64 in single precision: 36 bytes a particle and 41 MB, at one cell a particle. */
+fixpair_status_t fixpair_evolve_f32(const struct fixpair_components_f32 *position,
+                                    const struct fixpair_components_f32 *velocity,
+                                    struct fixpair_epoch *epoch,
+                                    const struct fixpair_gravity *gravity,
+                                    const struct fixpair_displacements_f32 *displacements,
+                                    const double *scale_factors,
+                                    size_t scale_factors_len,
+                                    const struct fixpair_outputs_f32 *outputs,
+                                    float *mesh1,
+                                    float *mesh2,
+                                    float *mesh3,
+                                    size_t mesh_len,
+                                    const struct fixpair_fft_f32 *fft,
+                                    void *scratch,
+                                    size_t scratch_len,
+                                    const struct fixpair_observer *observer,
+                                    const struct fixpair_exec *exec);
 
 /*
  * Friends of friends

@@ -289,9 +289,10 @@ unsafe fn query<H: Hook>(scratch: *mut Layout, fft: *const H, particles: usize, 
 ///      scratch   scratch_len bytes, see fixpair_evolve_scratch_f64
 ///      observer  told of each step and output, and can stop the run; or NULL
 ///      exec      or NULL
-/// Returns: 0; FIXPAIR_ERROR_STOPPED if the observer asked for it: go on with the same list whenever you like; FIXPAIR_ERROR_NULL (also for COLA without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE
-///          (also for a list that does not increase, and an epoch or output outside it), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh,
-///          _NOT_FINITE: particles as they were, unless NOT_FINITE comes from particles that move beyond all numbers. After that and after
+/// Returns: 0; FIXPAIR_ERROR_STOPPED if the observer asked for it: go on with the same list whenever you like; FIXPAIR_ERROR_NULL (also for COLA
+///          without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE (also for a list that does not increase, an epoch or output outside
+///          it, and no particles), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were, unless
+///          NOT_FINITE comes from a velocity or displacement, or from particles that move beyond all numbers. After that and after
 ///          FIXPAIR_ERROR_HOOK they are undefined
 /// Cost: a step is four transforms, a deposit, a kick and a drift; memory beyond the particles: three meshes
 ///

@@ -71,9 +71,9 @@ pub unsafe extern "C" fn fixpair_kick_scratch_f32(
 
 /// Kicks particles: u_i <- keep u_i + force F(x_i) + first psi1_i + second psi2_i, F(x_i) = sum_c W(x_c - x_i) F_c as fixpair_read_out_f64 has it.
 ///
-/// The factors are those of the time step and carry its units. psi1 and psi2 are displacements of the particles themselves, for COLA, whose
-/// velocities are what Lagrangian perturbation theory leaves over. Sums over the four terms are in double precision and rounded once; the
-/// result is the same, bit for bit, on any number of threads.
+/// Peculiar velocities go from a0 to a1 with f of fixpair_kick_factors and H0 (100 for km/s and Mpc/h): keep = a0/a1, force = f.factor H0/a1, and for COLA
+/// first = f.first H0/(a1 D), second = f.second H0/(a1 D2), D and D2 (fixpair_growth_factors) of the time at which psi1 and psi2 are the displacements of
+/// both orders. Sums over the four terms are in double precision and rounded once; the result is the same, bit for bit, on any number of threads.
 ///
 /// In/Out: velocity  u; may share an array of structs with the positions
 /// In:  position
@@ -81,8 +81,8 @@ pub unsafe extern "C" fn fixpair_kick_scratch_f32(
 ///      region    of configuration space; may run over the edge (fixpair_brick_with_ghosts)
 ///      box_size, window, shift  as fixpair_deposit_f64
 ///      keep, force, first, second  factors
-///      psi1      NULL if first is 0
-///      psi2      NULL if second is 0
+///      psi1      or NULL if first and second are 0
+///      psi2      or NULL if second is 0
 ///      scratch   scratch_len bytes, see fixpair_kick_scratch_f64
 ///      exec      or NULL
 /// Returns: as fixpair_deposit_f64; FIXPAIR_ERROR_NULL also for displacements with a factor that are NULL; FIXPAIR_ERROR_NOT_FINITE for
@@ -222,15 +222,16 @@ unsafe fn kick_particles<C: Triple, P: Places<Real = C::Real>>(
 
 /// Moves particles: x_i <- x_i + factor u_i + first psi1_i + second psi2_i, wrapped into [0, L).
 ///
-/// The factors are those of the time step and carry its units. psi1 and psi2 are displacements of the particles themselves, for COLA. Sums are
-/// in double precision and rounded once; no position becomes L itself. The result is the same, bit for bit, on any number of threads.
+/// With f of fixpair_drift_factors, and peculiar velocities of the time `at`: factor = f.factor at/H0, and for COLA first = f.first/D, second = f.second/D2, D,
+/// D2, psi1 and psi2 as for fixpair_kick_f64. Sums are in double precision and rounded once; no position becomes L itself. The result is the same, bit
+/// for bit, on any number of threads.
 ///
 /// In/Out: position  any finite numbers before; may share an array of structs with the velocities
 /// In:  velocity  u
 ///      box_size  L
 ///      factor, first, second
-///      psi1      NULL if first is 0
-///      psi2      NULL if second is 0
+///      psi1      or NULL if first and second are 0
+///      psi2      or NULL if second is 0
 ///      exec      or NULL
 /// Returns: 0, FIXPAIR_ERROR_LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE; FIXPAIR_ERROR_NULL also for displacements with a factor that are
 ///          NULL; FIXPAIR_ERROR_NOT_FINITE for box_size and factors, or for a particle that ends nowhere or more than 1e9 boxes away, after
