@@ -72,7 +72,7 @@ impl Default for Arguments {
             seeds: 1,
             first_seed: 1,
             window: Window::CloudInCell,
-            law: ForceLaw { gradient: Difference::FourPoint, ..ForceLaw::default() },
+            law: ForceLaw::FOUR_POINT,
             threads: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
             output: PathBuf::from("nonlinear-output"),
         }

@@ -6,7 +6,7 @@
 use fixpair::exec::Exec;
 use fixpair::halos::{
     Density, Halo, Shrink, Sphere, fof_labels, fof_labels_scratch, halos, halos_scratch, linking_length,
-    refine_centres, refine_centres_scratch, spheres, spheres_scratch,
+    refine_centres, spheres, spheres_scratch,
 };
 use fixpair::pm::Positions;
 
@@ -64,7 +64,7 @@ fn masses(snapshot: &Snapshot<'_>, groups: &[Halo], exec: &dyn Exec) -> Result<V
     let mut centres: Vec<_> = groups.iter().map(|halo| halo.centre).collect();
     let radii: Vec<_> = groups.iter().map(|halo| 2.0 * halo.radius).collect();
     let shrink = Shrink { factor: 0.9, n_min: LEAST };
-    let mut scratch = Memory::new(refine_centres_scratch::<f32>(particles)?);
+    let mut scratch = Memory::new(spheres_scratch::<f32>(particles)?);
     refine_centres(&mut centres, &radii, &position, box_size, &shrink, scratch.bytes(), exec)?;
     drop(scratch);
     let density = Density { box_size, particles_total: particles as u64, particle_mass: 1.0, n_min: LEAST };
