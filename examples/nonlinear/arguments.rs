@@ -22,7 +22,7 @@ Usage: cargo run --release --example nonlinear -- [options]
   -B, --mesh-factor B   cells a side for each particle: 1, 1.5, 2, 3       [default: 2]
   -L, --box LENGTH      box for P(k), Mpc/h; 0 for none                    [default: 512]
       --halo-box LENGTH box for halos, Mpc/h; 0 for none                   [default: 256]
-      --steps N         steps of equal da from z = 32 to 0                 [default: 40]
+      --steps N         steps of equal da from z = 32 to 0                 [default: 20]
   -s, --seeds N         pairs                                              [default: 1]
       --first-seed N    seed of the first pair                             [default: 1]
   -w, --window NAME     cic, tsc or pcs                                    [default: cic]
@@ -68,7 +68,7 @@ impl Default for Arguments {
             mesh_factor: 2.0,
             length: 512.0,
             halo_length: 256.0,
-            steps: 40,
+            steps: 20,
             seeds: 1,
             first_seed: 1,
             window: Window::CloudInCell,
