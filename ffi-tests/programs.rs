@@ -50,6 +50,8 @@ fn the_c_of_the_readme_compiles() {
     // What the reader of each block has at hand.
     let hosts = [
         "void *my_particles, size_t n, uint64_t seed, const double *k, const double *power, size_t rows, fixpair_fft_f32 fft",
+        "fixpair_components_f32 x, fixpair_components_f32 v, double L, fixpair_fft_f32 fft, float *mesh, void *scratch, size_t bytes, \
+         void *me, int32_t (*save_and_show)(void *, const fixpair_progress *), uint64_t *labels, fixpair_halo *halos, size_t count",
         "struct particle *p, size_t count, double L, fixpair_fft_f32 fft, float *mesh, void *scratch, size_t bytes, \
          int64_t *sums, size_t words, fixpair_bin *bins, double *P",
     ];
