@@ -110,7 +110,7 @@ pub fn evolve_scratch<T: Real>(fft: &dyn Fft3<T>, particles: usize, window: Wind
 ///
 /// # Errors
 /// `Length` for arrays that differ or an empty list, `Range` for scale factors that do not increase or an epoch or output that is not in the list,
-/// `NotFinite`, `Null` for COLA without displacements, as [`deposit`], [`forces`], [`Stepper::kick`] for parameters; all before anything is
+/// `NotFinite`, `Null` for COLA without displacements, as [`deposit`](fn@super::deposit::deposit), [`forces`](fn@super::force::forces), [`Stepper::kick`] for parameters; all before anything is
 /// touched. `Stopped` as above. `NotFinite` for particles that are or become so, and `Hook`: `epoch` is then of no use.
 ///
 /// The same bits for any number of threads. Memory: particles, three meshes, scratch. Cost of a step: four transforms, a deposit, a kick, a drift, 1.5 ms
