@@ -28,8 +28,8 @@
 #include "picture.h"
 #include "simulation.h"
 
-/* What steps of a tenth of the way from z = 9 leave. */
-#define STEPPER_ERROR 0.01
+/* Of P, by ten steps from z = 9: leapfrog loses 2%, COLA gains 1%, FastPM is exact. */
+#define STEPPER_ERROR 0.02
 
 enum { MOST_OUTPUTS = 16, PATH_LENGTH = 4096, PIXELS = 512, LARGEST = 2 };
 
@@ -59,7 +59,7 @@ static void help(FILE *stream) {
     fputs("usage: 04_pm_halos [options]\n\n"
           "  --particles N     on a side; default: 64\n"
           "  --mesh-factor B   cells over particles on a side, 1 to 3; default: 1\n"
-          "  --box L           in Mpc/h; default: 128\n"
+          "  --box L           in Mpc/h; default: 128. In less than 100 even the largest modes do not grow as claimed\n"
           "  --steps N         equal in the scale factor; default: 10\n"
           "  --seed S          default: 1\n"
           "  --stepper S       fastpm, leapfrog or cola; default: fastpm\n"
@@ -114,42 +114,6 @@ static int check_growth(struct laboratory *lab, size_t output, const struct fixp
     return 0;
 }
 
-static void check_halos(struct laboratory *lab, double redshift) {
-    const struct groups *groups = &lab->groups;
-    uint64_t members = 0, wrong = 0;
-    double mass = 0.0, inside = 0.0, of_inside = 0.0;
-    for (size_t i = 0; i < groups->count; i++) {
-        const struct fixpair_halo *halo = &groups->halos[i];
-        const struct fixpair_sphere *spheres = groups->spheres + GROUPS_SPHERES * i;
-        wrong += groups->labels[halo->label] != halo->label || halo->members < GROUPS_LEAST;
-        wrong += i > 0 && halo->members > groups->halos[i - 1].members;
-        for (size_t s = 0; s < GROUPS_SPHERES * GROUPS_SPHERES; s++) {
-            size_t one = s / GROUPS_SPHERES, other = s % GROUPS_SPHERES;
-            wrong += groups->overdensities[one] > groups->overdensities[other] && spheres[one].mass > spheres[other].mass;
-        }
-        members += halo->members;
-        mass += halo->mass;
-        if (halo->members < 100) continue;
-        of_inside += halo->mass;
-        inside += spheres[GROUPS_200B].mass;
-    }
-    /* A label is the number of a particle of the group: counted again, by it. */
-    uint64_t counted = 0, *count = calloc(groups->particles, sizeof *count);
-    for (size_t i = 0; count != NULL && i < groups->particles; i++) count[groups->labels[i]]++;
-    for (size_t i = 0; count != NULL && i < groups->particles; i++) counted += count[i] >= GROUPS_LEAST ? count[i] : 0;
-    free(count);
-    lab->failures += claim(wrong == 0, "z = %g: %lu halos, the largest first; spheres of higher density hold less", redshift,
-                           (unsigned long)groups->count);
-    lab->failures += claim(counted == members && fabs(mass - (double)members * groups->particle_mass) <= 1e-12 * mass,
-                           "z = %g: their mass is that of %llu particles, %.1f%% of all", redshift, (unsigned long long)members,
-                           100.0 * (double)members / (double)groups->particles);
-    if (of_inside == 0.0) return;
-    /* Groups reach about as far; but the forces of a mesh are soft below two cells, and small groups then not as dense. */
-    lab->failures += claim(inside > 0.4 * of_inside && inside < 1.2 * of_inside,
-                           "z = %g: those of 100 particles and more have %.2f of it in spheres of 200 times the mean density", redshift,
-                           inside / of_inside);
-}
-
 static int analyse(struct laboratory *lab, const struct fixpair_components_f32 *position,
                    const struct fixpair_components_f32 *velocity, size_t output) {
     const struct simulation *simulation = &lab->simulation;
@@ -167,7 +131,7 @@ static int analyse(struct laboratory *lab, const struct fixpair_components_f32 *
     TRY(groups_find(&lab->groups, &x, &v, &conditions.cosmology, 1.0 / (1.0 + redshift)));
     TRY(groups_write(&lab->groups, path_of(path, lab, redshift, "halos.csv")));
     TRY(picture_write(&picture, &x, path_of(path, lab, redshift, "ppm")));
-    check_halos(lab, redshift);
+    lab->failures += groups_check(&lab->groups, redshift);
     return check_growth(lab, output, &conditions);
 }
 

@@ -106,3 +106,43 @@ int groups_write(const struct groups *groups, const char *path) {
     if (failed) fprintf(stderr, "%s: %s\n", path, strerror(errno));
     return failed;
 }
+
+int groups_check(const struct groups *groups, double redshift) {
+    int failures = 0;
+    uint64_t members = 0, wrong = 0;
+    double mass = 0.0, inside = 0.0, of_inside = 0.0;
+    size_t large = 0;
+    for (size_t i = 0; i < groups->count; i++) {
+        const struct fixpair_halo *halo = &groups->halos[i];
+        const struct fixpair_sphere *spheres = groups->spheres + GROUPS_SPHERES * i;
+        wrong += groups->labels[halo->label] != halo->label || halo->members < GROUPS_LEAST;
+        wrong += i > 0 && halo->members > groups->halos[i - 1].members;
+        for (size_t s = 0; s < GROUPS_SPHERES * GROUPS_SPHERES; s++) {
+            size_t one = s / GROUPS_SPHERES, other = s % GROUPS_SPHERES;
+            wrong += groups->overdensities[one] > groups->overdensities[other] && spheres[one].mass > spheres[other].mass;
+        }
+        members += halo->members;
+        mass += halo->mass;
+        if (halo->members < 100) continue;
+        large++;
+        of_inside += halo->mass;
+        inside += spheres[GROUPS_200B].mass;
+    }
+    /* A label is the number of a particle of the group: counted again, by it. */
+    uint64_t counted = 0, *count = calloc(groups->particles, sizeof *count);
+    for (size_t i = 0; count != NULL && i < groups->particles; i++) count[groups->labels[i]]++;
+    for (size_t i = 0; count != NULL && i < groups->particles; i++) counted += count[i] >= GROUPS_LEAST ? count[i] : 0;
+    free(count);
+    failures += claim(wrong == 0, "z = %g: %lu halos, the largest first; spheres of higher density hold less", redshift,
+                      (unsigned long)groups->count);
+    failures += claim(counted == members && fabs(mass - (double)members * groups->particle_mass) <= 1e-12 * mass,
+                      "z = %g: their mass is that of %llu particles, %.1f%% of all", redshift, (unsigned long long)members,
+                      100.0 * (double)members / (double)groups->particles);
+    if (large < 10) return failures;
+    /* Groups reach about as far; but the forces of a mesh are soft below two cells, and small groups then not as dense: one or two may
+       reach 200 times the mean nowhere. */
+    failures += claim(inside > 0.4 * of_inside && inside < 1.2 * of_inside,
+                      "z = %g: in the %lu of 100 particles and more, spheres of 200 times the mean hold %.2f of it", redshift,
+                      (unsigned long)large, inside / of_inside);
+    return failures;
+}

@@ -47,4 +47,7 @@ int groups_find(struct groups *groups, const struct fixpair_positions_f32 *posit
 /* A catalogue with a line of names above. */
 int groups_write(const struct groups *groups, const char *path);
 
+/* Claims what must hold of a catalogue. Returns how much of it does not. */
+int groups_check(const struct groups *groups, double redshift);
+
 #endif

@@ -8,8 +8,10 @@
 
 #include "memory.h"
 
-/* Points in a cube of the lattice. */
-enum { FILL = 600, COLOURS = 6 };
+/* Points that a cube of the lattice has for each pixel that it covers: cubes stretch in voids. */
+#define POINTS 10.0
+
+enum { LEAST_POINTS = 64, COLOURS = 6 };
 
 /*
  * Point p of a cube lies at the fractions of p times these: as even as can be in space, and from each side, for any number of points.
@@ -73,8 +75,8 @@ static int is_seen(const struct picture *picture, double corner[8][3]) {
 }
 
 /* How much of each corner is in each point. */
-static void fill_weights(double *weights) {
-    for (size_t p = 0; p < FILL; p++) {
+static void fill_weights(double *weights, size_t points) {
+    for (size_t p = 0; p < points; p++) {
         for (size_t c = 0; c < 8; c++) {
             double *weight = weights + 8 * p + c;
             *weight = 1.0;
@@ -86,8 +88,8 @@ static void fill_weights(double *weights) {
     }
 }
 
-static void draw_cube(double *pixels, const struct picture *picture, double corner[8][3], const double *weights) {
-    for (size_t p = 0; p < FILL; p++) {
+static void draw_cube(double *pixels, const struct picture *picture, double corner[8][3], const double *weights, size_t points) {
+    for (size_t p = 0; p < points; p++) {
         double point[3] = {0.0, 0.0, 0.0};
         for (size_t c = 0; c < 8; c++) {
             for (size_t axis = 0; axis < 3; axis++) point[axis] += weights[8 * p + c] * corner[c][axis];
@@ -103,9 +105,7 @@ static void colour(unsigned char *rgb, double density) {
     for (size_t i = 0; i < 3; i++) rgb[i] = (unsigned char)(colours[below][i] + part * (colours[below + 1][i] - colours[below][i]) + 0.5);
 }
 
-static int write_pixels(const struct picture *picture, const double *pixels, const char *path) {
-    double n = (double)picture->n, side = (double)picture->side;
-    double mean = FILL * n * n * n / (side * side) * picture->depth / picture->box_size;
+static int write_pixels(const struct picture *picture, const double *pixels, double mean, const char *path) {
     FILE *stream = fopen(path, "wb");
     int failed = stream == NULL;
     if (!failed) {
@@ -125,19 +125,21 @@ static int write_pixels(const struct picture *picture, const double *pixels, con
 }
 
 int picture_write(const struct picture *picture, const struct fixpair_positions_f32 *position, const char *path) {
-    size_t n = picture->n;
-    double *pixels = memory_take_doubles(picture->side * picture->side), *weights = memory_take_doubles(8 * FILL), corner[8][3];
+    size_t n = picture->n, area = picture->side * picture->side, points = (size_t)(POINTS * (double)area / (double)(n * n));
+    if (points < LEAST_POINTS) points = LEAST_POINTS;
+    double *pixels = memory_take_doubles(area), *weights = memory_take_doubles(8 * points), corner[8][3];
+    double mean = (double)points * (double)(n * n * n) / (double)area * picture->depth / picture->box_size;
     int failed = pixels == NULL || weights == NULL;
     if (!failed) {
-        fill_weights(weights);
+        fill_weights(weights, points);
         for (size_t i = 0; i < n * n * n; i++) {
             for (size_t c = 0; c < 8; c++) {
                 take_corner(corner[c], picture, position, i / (n * n) + (c & 1), i / n % n + (c >> 1 & 1), i % n + (c >> 2 & 1),
                             c == 0 ? NULL : corner[0]);
             }
-            if (is_seen(picture, corner)) draw_cube(pixels, picture, corner, weights);
+            if (is_seen(picture, corner)) draw_cube(pixels, picture, corner, weights, points);
         }
-        failed = write_pixels(picture, pixels, path);
+        failed = write_pixels(picture, pixels, mean, path);
     }
     free(pixels);
     free(weights);

@@ -35,13 +35,9 @@ static int describe(struct simulation *simulation) {
     gravity->cosmology = conditions->cosmology;
     gravity->box_size = choice->box_size;
     gravity->stepper = choice->stepper;
-    /* On one cell a particle the windows of deposit and read-out can be undone. Finer meshes see the lattice that particles start from:
-       windows are left in, and the gradient falls off before the lattice's modes instead of amplifying them. */
-    if (choice->mesh_factor == 1) {
-        gravity->window = gravity->law.window = FIXPAIR_WINDOW_PCS;
-    } else {
-        gravity->law.gradient = FIXPAIR_DIFFERENCE_FOUR_POINT;
-    }
+    /* On one cell a particle the smoothing of deposit and read-out can be undone. Finer meshes see the lattice that particles start
+       from, whose modes that would amplify. */
+    if (choice->mesh_factor == 1) gravity->window = gravity->law.window = FIXPAIR_WINDOW_PCS;
     TRY(fixpair_linear_steps(simulation->scale_factors, choice->steps + 1, 1.0 / (1.0 + choice->start), 1.0 / (1.0 + choice->end)));
     return 0;
 }
