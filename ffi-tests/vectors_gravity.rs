@@ -178,7 +178,8 @@ fn slabs<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
     let ranges = [[0, 5], [5, 7]];
     let bricks = ranges.map(|[first, planes]| Brick::slab(N, Space::Configuration, first, planes));
     let own = bricks.map(|brick| Region::from_brick(&brick.expect("a slab")).expect("a region"));
-    let wide = bricks.map(|brick| Region::with_ghosts(&brick.expect("a slab"), window, shift).expect("a region"));
+    let wide =
+        bricks.map(|brick| Region::with_ghosts(&brick.expect("a slab"), window, shift).expect("a region"));
     let mut places: [Vec<T>; 2] = [Vec::new(), Vec::new()];
     for i in 0..PARTICLES {
         let particle = [0, 1, 2].map(|axis| T::from_f64(BOX * (noise(3 * i + axis) + 1.0) / 2.0));

@@ -141,8 +141,7 @@ pub(crate) fn halo_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
     let scratch = memory.bytes(layout.size);
     refine_centres(&mut centres, &radii, &position, BOX, &shrink, scratch, &Serial).expect("centres");
     add("refine_centres", Hash::new().doubles(centres.as_flattened()));
-    let density =
-        Density { box_size: BOX, particles_total: PARTICLES as u64, particle_mass: MASS, n_min: 5 };
+    let density = Density { box_size: BOX, particles_total: PARTICLES as u64, particle_mass: MASS, n_min: 5 };
     let mut found = vec![Sphere::default(); 3 * count];
     let scratch = memory.bytes(layout.size);
     spheres(&mut found, &centres, &DENSITIES, &position, &density, scratch, &Serial).expect("spheres");
