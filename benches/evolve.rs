@@ -116,7 +116,7 @@ impl Job {
             box_size: self.particles as f64,
             hubble: 100.0,
             window,
-            law: ForceLaw::default(),
+            law: ForceLaw::FOUR_POINT,
             stepper: Stepper::FastPm,
         };
         let mut list = [0.0; STEPS + 1];

@@ -312,7 +312,7 @@ static int open_workshop(struct workshop *shop) {
     /* Gadget's ids begin at 1. */
     TRY(fixpair_particle_ids(shop->id, shop->count, &shop->fft.hook.configuration, 1, &shop->exec));
     TRY(describe(&conditions, shop, &kinds[NORMAL]));
-    return linear_theory(&shop->linear, &conditions, shop->theory);
+    return linear_theory(shop->theory, shop->linear.edges, shop->linear.shells + 1, &conditions);
 }
 
 /* Takes a workshop at any stage of open_workshop. */

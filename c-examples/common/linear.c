@@ -107,14 +107,14 @@ int linear_average(double *average, const double *values, const uint64_t *edges,
     return 0;
 }
 
-int linear_theory(struct linear *linear, const struct fixpair_conditions *conditions, double *power) {
-    size_t squares = linear->n / 2 * (linear->n / 2);
+int linear_theory(double *power, const uint64_t *edges, size_t edges_len, const struct fixpair_conditions *conditions) {
+    size_t squares = (size_t)edges[edges_len - 1];
     double *k = memory_take_doubles(squares), *each = memory_take_doubles(squares);
     int32_t outcome = 1;
     if (k != NULL && each != NULL) {
         for (size_t square = 1; square < squares; square++) k[square] = TWO_PI / conditions->box_size * sqrt((double)square);
         outcome = fixpair_linear_power(each + 1, k + 1, squares - 1, &conditions->cosmology, &conditions->linear, conditions->redshift);
-        if (outcome == 0) outcome = linear_average(power, each, linear->edges, linear->shells + 1);
+        if (outcome == 0) outcome = linear_average(power, each, edges, edges_len);
     }
     free(k);
     free(each);

@@ -52,7 +52,7 @@ int linear_measure(struct linear *linear, double box_size, const double *modes, 
  */
 int linear_average(double *average, const double *values, const uint64_t *edges, size_t edges_len);
 
-/* P of linear theory averaged so over the shells of `linear`. */
-int linear_theory(struct linear *linear, const struct fixpair_conditions *conditions, double *power);
+/* P of linear theory at conditions->redshift averaged so: edges_len - 1 values, of shells that begin above 0. */
+int linear_theory(double *power, const uint64_t *edges, size_t edges_len, const struct fixpair_conditions *conditions);
 
 #endif

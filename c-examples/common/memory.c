@@ -19,9 +19,17 @@ void *memory_take(struct fixpair_layout layout) {
     return memset(memory, 0, size);
 }
 
-double *memory_take_doubles(size_t count) {
+static void *take_numbers(size_t count, size_t bytes) {
     struct fixpair_layout layout;
-    layout.size = count > SIZE_MAX / sizeof(double) ? SIZE_MAX : count * sizeof(double);
+    layout.size = count > SIZE_MAX / bytes ? SIZE_MAX : count * bytes;
     layout.align = 64;
     return memory_take(layout);
+}
+
+double *memory_take_doubles(size_t count) {
+    return take_numbers(count, sizeof(double));
+}
+
+float *memory_take_floats(size_t count) {
+    return take_numbers(count, sizeof(float));
 }

@@ -13,7 +13,8 @@
  */
 void *memory_take(struct fixpair_layout layout);
 
-/* `count` doubles, aligned to 64 bytes; the same otherwise. */
+/* `count` numbers, aligned to 64 bytes; the same otherwise. */
 double *memory_take_doubles(size_t count);
+float *memory_take_floats(size_t count);
 
 #endif

@@ -21,4 +21,15 @@ int transform_open(struct transform *transform, size_t n, const struct fixpair_e
 
 void transform_close(struct transform *transform);
 
+/* The same in single precision. */
+struct transform_f32 {
+    struct fixpair_fft_f32 hook;
+    void *tables;
+    void *scratch;
+};
+
+int transform_open_f32(struct transform_f32 *transform, size_t n, const struct fixpair_exec *exec);
+
+void transform_close_f32(struct transform_f32 *transform);
+
 #endif

@@ -5,9 +5,10 @@
 //! list of N scale factors N forces. [`Epoch`] says where both are: state is positions, velocities and epoch, and nothing else, so that a run that goes on
 //! from what was saved at any step gives the same bits as one that never stopped.
 //!
-//! Particles of a lattice feel it on meshes finer than one cell a particle, until they have left it: on two cells a particle a force whose windows are
-//! undone (`ForceLaw::window`) is amplified where the lattice has its own modes, and moves them wrongly by tens of per cent. Undo windows at one cell a
-//! particle, where the largest modes then move to 1e-5; leave them at two or more.
+//! Particles that start from a lattice have images of their modes about multiples of its wavenumber. On two cells a particle the first lie at the mesh's
+//! Nyquist wavenumber: an exact gradient lets them grow, which adds 10% to P(k) at half the particles' Nyquist wavenumber, and a force whose windows are
+//! undone (`ForceLaw::window`) is wrong by tens of per cent. So with two cells or more take [`ForceLaw::FOUR_POINT`]; with one cell windows may be undone,
+//! and the largest modes then move to 1e-5. Equal steps of a suit late times better than equal steps of ln a.
 //!
 //! Output at any a between: with the force of the nearest step, positions drift from a_i to a and velocities are kicked to a, in arrays of their
 //! own. That is the path that the leapfrog takes anyway; it meets the steps exactly, and its error is of second order, as theirs.

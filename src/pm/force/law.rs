@@ -71,7 +71,8 @@ const HIGHEST_POWER: u32 = 4;
 ///
 ///     phi_k = - S(k) / (W(k)^power K2(k)) delta_k,     F_k = - i K_a(k) phi_k,     S(k) = exp(-k^2 r_s^2)
 ///
-/// K2 is minus the Laplacian, i K_a the gradient. The default is exact in both, with no window and no split.
+/// K2 is minus the Laplacian, i K_a the gradient. The default is exact in both, with no window and no split; for runs with more than one cell a particle
+/// [`ForceLaw::FOUR_POINT`] is the better one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ForceLaw {
     /// K2.
@@ -85,6 +86,16 @@ pub struct ForceLaw {
 }
 
 impl ForceLaw {
+    /// Exact Laplacian and four-point gradient: FastPM's own choice (its kernel 1_4). The gradient vanishes at the Nyquist wavenumber of the mesh, where
+    /// with two cells a particle the lattice of the particles has its first images; an exact one lets them grow, which adds 10% to P(k) at
+    /// half the particles' Nyquist wavenumber by z = 0.
+    pub const FOUR_POINT: Self = Self {
+        laplacian: Difference::Exact,
+        gradient: Difference::FourPoint,
+        window: None,
+        split_scale: 0.0,
+    };
+
     fn check(&self) -> Result<()> {
         if !self.split_scale.is_finite() {
             return Err(Error::NotFinite);
