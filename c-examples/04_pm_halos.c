@@ -141,6 +141,8 @@ static int analyse(struct laboratory *lab, const struct fixpair_components_f32 *
 static int32_t observe(void *context, const struct fixpair_progress *progress) {
     struct laboratory *lab = context;
     char path[PATH_LENGTH];
+    /* A run ends after its step, which is told too: after an output that failed, the last checkpoint is from where it comes again. */
+    if (lab->broken) return 1;
     if (progress->event == FIXPAIR_EVENT_OUTPUT) {
         lab->broken = analyse(lab, &lab->outputs.position, &lab->outputs.velocity, progress->output);
     } else {

@@ -177,11 +177,17 @@ static int read_header(FILE *stream, struct simulation_choice *choice, struct fi
            fread(choice, sizeof *choice, 1, stream) != 1 || fread(epoch, sizeof *epoch, 1, stream) != 1;
 }
 
+/* What the library refuses need not be asked for here; but memory is taken and arrays are indexed before it is called. */
+static int is_strange(const struct simulation_choice *choice) {
+    return choice->n > 1024 || choice->mesh_factor > 3 || choice->steps > 100000 ||
+           (choice->phase != FIXPAIR_PHASE_ORIGINAL && choice->phase != FIXPAIR_PHASE_INVERTED);
+}
+
 int simulation_peek(struct simulation_choice *choice, const char *path) {
     struct fixpair_epoch epoch;
     FILE *stream = fopen(path, "rb");
     if (stream == NULL) return complain(path, strerror(errno));
-    int failed = read_header(stream, choice, &epoch);
+    int failed = read_header(stream, choice, &epoch) || is_strange(choice);
     fclose(stream);
     return failed ? complain(path, "is no checkpoint of a simulation") : 0;
 }
