@@ -2290,8 +2290,10 @@ fixpair_status_t fixpair_evolve_scratch_f32(struct fixpair_layout *scratch,
  * Outputs at any time: with the force of the nearest step, positions drift from it to the output and velocities are kicked, in arrays of their own; no
  * force is computed. They meet the steps exactly, with an error of second order between them.
  *
- * At two cells a particle or more (B >= 2) leave law.window at 0: a lattice of particles has modes of its own there, which sharpening would amplify. At
- * one cell a particle FIXPAIR_WINDOW_PCS with law.window the same moves the largest modes to 1e-5.
+ * At two cells a particle or more (B >= 2) keep the four-point gradient and leave law.window at 0: a lattice of particles has images of its modes there,
+ * which an exact gradient lets grow (10% in P(k)) and sharpening amplifies. At one cell a particle FIXPAIR_WINDOW_PCS with law.window the same moves the
+ * largest modes to 1e-5. Equal steps of a suit late times better than equal steps of ln a. With B = 2, CIC and 20 steps from z = 32, P(k) of
+ * particles 2 Mpc/h apart is within 3% of HMcode's for k < 0.25 h/Mpc.
  *
  * The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its transform,
  * fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
