@@ -72,7 +72,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let start = Instant::now();
     let universes = arguments.seeds * Variant::COUNT;
-    let progress = bar("universes", universes * Suite::steps_of_one(arguments))?;
+    let progress = bar("steps of universes", universes * Suite::steps_of_one(arguments))?;
     let suite = Suite::run(
         arguments,
         &Watch {
