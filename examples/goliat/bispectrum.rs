@@ -128,7 +128,9 @@ impl<'a> Triangles<'a> {
         let unit = potential_amplitude[size / 2];
         let brick = self.universe.fourier()?;
         with_transform(self.side, *exec, |fft| {
-            let mut fields = vec![0.0; self.reals(fft)?];
+            // Half of the shells at a time: as much memory in double precision as a measurement has in single.
+            let meshes = 1 + (self.edges.len() / 2).max(3);
+            let mut fields = vec![0.0; bispectrum_meshes(fft, meshes)?];
             let mut field = |sign: f64| {
                 let mode = |(alpha, p): (&f64, &f64)| alpha * (1.0 + sign * (p / unit) * (p / unit));
                 let table: Vec<_> = alpha.iter().zip(potential_amplitude).map(mode).collect();

@@ -5,8 +5,8 @@ use std::ops::Range;
 
 use crate::late::{LEAST, mass};
 use crate::late_statistics::{
-    Estimate, Tracer, bias, expected_response, halo_count, have_halos, inverted, late_band, relative,
-    response, squeezed_amplitude,
+    Estimate, SQUEEZED_REACH, Tracer, bias, expected_response, halo_count, have_halos, inverted, late_band,
+    relative, response, squeezed_amplitude,
 };
 use crate::report::sigma_text;
 use crate::statistics::{Kind, differences, error_of_mean, estimates, mean, quadratic_mean, ranges};
@@ -95,8 +95,8 @@ fn mean_table(text: &mut String, suite: &Suite, tracers: &[Tracer]) {
         });
     }
     if tracers.contains(&Tracer::Halos) {
-        // Of matter the formula says nothing.
-        line("scale-dependent bias, p = 1", &|tracer, range| {
+        // Of matter the formula says nothing; and of halos not that f_NL > 0 makes those of one mass more common and so less biased.
+        line("Eq. bk: the same b_g, and p = 1", &|tracer, range| {
             let value = expected_response(suite, range);
             (tracer == Tracer::Halos).then_some(Estimate { value, error: f64::NAN })
         });
@@ -125,7 +125,10 @@ fn scatter_table(text: &mut String, suite: &Suite, tracers: &[Tracer]) {
 }
 
 fn squeezed_table(text: &mut String, suite: &Suite, tracers: &[Tracer]) {
-    text.push_str("\nSqueezed bispectrum at z = 1, in units of linear theory of matter for f_NL = 1: mean and its error\n");
+    let _ = write!(
+        text,
+        "\nSqueezed bispectrum at z = 1, k below {SQUEEZED_REACH} h/Mpc, in units of linear\ntheory of matter for f_NL = 1: mean and its error\n"
+    );
     let _ = write!(text, "  {:<36}", "");
     for tracer in tracers {
         let _ = write!(text, "{:>24}", tracer.name());

@@ -222,14 +222,17 @@ pub(crate) fn expected_response(suite: &Suite, range: &Range<usize>) -> f64 {
     weighted(range, weight, |i| (1.0 + shift(i) / b).powi(2))
 }
 
-/// The squeezed bispectrum in units of linear theory for f_NL = 1, with its error: a least-squares amplitude over the triangles of the slice.
+/// Largest k, in h/Mpc, of the triangles of [`squeezed_amplitude`]: beyond it linear theory says little of z = 1.
+pub(crate) const SQUEEZED_REACH: f64 = 0.25;
+
+/// The squeezed bispectrum in units of linear theory for f_NL = 1: a least-squares amplitude over the triangles of the slice.
 pub(crate) fn squeezed_amplitude(one: &Late, tracer: Tracer, bins: &Bins) -> f64 {
     let slice = &bins.squeezed;
     // Noise grows with the spectra, as linear theory has it; the unit of sigma cancels.
     let weight = |i: usize| slice.template[i] / slice.sigma[i].powi(2);
-    let above: f64 = tracer.squeezed(one).iter().enumerate().map(|(i, value)| weight(i) * value).sum();
-    let below: f64 = slice.template.iter().enumerate().map(|(i, template)| weight(i) * template).sum();
-    above / (bins.squeezed_growth * below)
+    let count = slice.k.partition_point(|&k| k < SQUEEZED_REACH).max(1).min(slice.k.len());
+    let sum = |values: &[f64]| -> f64 { (0..count).map(|i| weight(i) * values[i]).sum() };
+    sum(tracer.squeezed(one)) / (bins.squeezed_growth * sum(&slice.template))
 }
 
 #[cfg(test)]

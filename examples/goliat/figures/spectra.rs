@@ -43,6 +43,10 @@ pub(super) fn draw(suite: &Suite) -> Drawing {
             ]
         };
         power.legend(&mut drawing, &entries, [false, true]);
+        if !first {
+            let keys = OTHERS.map(|(_, phase, colour, name)| (Key::Line(pen(phase, colour)), name));
+            power.legend(&mut drawing, &keys, [true, false]);
+        }
         power.frame(&mut drawing, "", label("*P*(*k*)  [(Mpc/*h*)^{3}],  *z* = 1"));
 
         for ((tracer, there), area) in tracers.into_iter().zip([middle, lower]) {
@@ -52,10 +56,6 @@ pub(super) fn draw(suite: &Suite) -> Drawing {
                 draw_ratios(&mut drawing, suite, &axes, tracer, half);
             } else {
                 axes.note(&mut drawing, "too few halos", 0.5);
-            }
-            if tracer == Tracer::Halos && first {
-                let keys = OTHERS.map(|(_, phase, colour, name)| (Key::Line(pen(phase, colour)), name));
-                axes.legend(&mut drawing, &keys, [true, false]);
             }
             let name = match tracer {
                 Tracer::Halos => "halos,  *P* / *P*_{Normal}",
