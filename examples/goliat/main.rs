@@ -1,9 +1,10 @@
 //! What Fix, Pair and Match do to the scatter of initial conditions with local primordial non-Gaussianity.
 //!
-//! `cargo run --release --example goliat` makes N seeds x 8 variants of the initial conditions of the GOLIAT-PNG suite
-//! (Avila & Adame 2022, arXiv:2204.11103) at z = 32, as in the appendix of the paper, and writes tables and figures.
-//! What it measures: P(k), the bispectrum and f_NL from it, and of the first seed's particles the multipoles in redshift space.
-//! The data walks one way: arguments -> suite (measure) -> statistics -> report and figures.
+//! `cargo run --release --example goliat` makes N seeds x 8 variants of the GOLIAT-PNG suite (Avila & Adame 2022,
+//! arXiv:2204.11103) in miniature, from initial conditions at z = 32 to halos at z = 1, and writes tables and figures.
+//! What it measures: at z = 32 P(k), the bispectrum and f_NL from it, and of the first seed's particles the multipoles in redshift space; at
+//! z = 1 P(k) and squeezed bispectra of halos and matter.
+//! The data walks one way: arguments -> suite (measure: start -> evolution -> late; store) -> statistics -> report and figures.
 
 mod arguments;
 mod axes;
@@ -11,14 +12,24 @@ mod bispectrum;
 #[path = "../common/boltzmann.rs"]
 #[allow(dead_code, reason = "the readers of files are for other programs")]
 mod boltzmann;
+mod csv;
+mod density;
 mod drawing;
+mod evolution;
 mod figures;
+mod late;
+mod late_report;
+mod late_statistics;
 mod measure;
+mod measurement;
 #[path = "../common/memory.rs"]
 mod memory;
+mod presets;
 mod redshift_space;
 mod report;
+mod start;
 mod statistics;
+mod store;
 mod suite;
 mod text;
 mod universe;
@@ -30,7 +41,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use arguments::{Arguments, Request};
-use suite::{Suite, Variant};
+use suite::{Suite, Variant, Watch};
 
 /// Whatever stops the program; it is shown to a person.
 pub(crate) type Failure = Box<dyn std::error::Error + Send + Sync>;
@@ -47,7 +58,7 @@ fn main() -> ExitCode {
 
 fn answer(request: Request) -> Result<(), Failure> {
     match request {
-        Request::Help => say(arguments::HELP)?,
+        Request::Help => say(&arguments::help())?,
         Request::Run(arguments) => run(&arguments)?,
     }
     Ok(())
@@ -60,12 +71,19 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     std::fs::create_dir_all(output).map_err(unwritable)?;
 
     let start = Instant::now();
-    let progress = bar("initial conditions", arguments.seeds * Variant::COUNT)?;
-    let suite = Suite::run(arguments, &|| progress.inc(1))?;
+    let universes = arguments.seeds * Variant::COUNT;
+    let progress = bar("steps of universes", universes * Suite::steps_of_one(arguments))?;
+    let suite = Suite::run(
+        arguments,
+        &Watch {
+            advance: &|steps| progress.inc(steps as u64),
+            say: &|line| progress.suspend(|| eprintln!("goliat: {line}")),
+        },
+    )?;
     progress.finish();
     let elapsed = start.elapsed();
 
-    for (name, content) in report::tables(&suite) {
+    for (name, content) in csv::tables(&suite) {
         std::fs::write(output.join(name), content).map_err(unwritable)?;
     }
     let pictures = figures::all(&suite)?;

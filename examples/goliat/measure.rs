@@ -1,120 +1,126 @@
-//! One initial condition: from a seed and a variant to what is measured in it.
+//! One universe: from a seed and a variant to what is measured in it.
 
 use fixpair::estimate::binning::Binning;
 use fixpair::estimate::compensation::Compensation;
-use fixpair::exec::Serial;
-use fixpair::fft::Fft3;
 use fixpair::initial::png::Local;
-use fixpair::initial::realise::{Field, linear_density};
 use fixpair::noise::{self, Realisation};
 
 use crate::Failure;
-use crate::bispectrum::Triangles;
+use crate::bispectrum::{Those, Triangles};
+use crate::evolution::{Plan, Voyage};
+use crate::measurement::{Early, Late, Measurement};
 use crate::redshift_space::multipoles;
-use crate::suite::{Amplitude, Configuration, Measurement, Phase, Variant};
+use crate::start::Start;
+use crate::store::{Found, Part};
+use crate::suite::{Amplitude, Configuration, Phase, Variant};
 use crate::universe::{Universe, fine_side, with_transform};
 
-/// A worker's transforms and memory.
+/// What making a universe takes. Memory is taken and given back stage by stage.
 pub(crate) struct Bench<'a> {
-    configuration: &'a Configuration,
-    universe: &'a Universe,
-    triangles: &'a Triangles<'a>,
-    fft: &'a mut (dyn Fft3<f64> + 'a),
-    fine: &'a mut (dyn Fft3<f64> + 'a),
-    /// Rounding to single precision moves f_NL by far less than its scatter, and halves the bispectrum's memory and time.
-    single: &'a mut (dyn Fft3<f32> + 'a),
-    density: Vec<f64>,
-    mesh: Vec<f64>,
-    rounded: Vec<f32>,
-    fields: Vec<f32>,
-}
-
-/// Lends a bench for the time of a call.
-pub(crate) fn with_bench<R>(
-    configuration: &Configuration,
-    universe: &Universe,
-    triangles: &Triangles<'_>,
-    body: impl FnOnce(&mut Bench<'_>) -> Result<R, Failure>,
-) -> Result<R, Failure> {
-    let side = fine_side(universe.size)?;
-    with_transform(universe.size, |fft| {
-        with_transform(side, |fine| {
-            with_transform(side, |single| {
-                body(&mut Bench {
-                    configuration,
-                    universe,
-                    triangles,
-                    density: vec![0.0; fft.length()],
-                    mesh: vec![0.0; fine.length()],
-                    rounded: vec![0.0; fft.length()],
-                    fields: vec![0.0; triangles.reals(single)?],
-                    fft,
-                    fine,
-                    single,
-                })
-            })
-        })
-    })
+    pub(crate) configuration: &'a Configuration,
+    pub(crate) universe: &'a Universe<'a>,
+    pub(crate) triangles: &'a Triangles<'a>,
+    pub(crate) plan: Plan<'a>,
+    /// Told of files that are of no use.
+    pub(crate) say: &'a (dyn Fn(&str) + Sync),
 }
 
 impl Bench<'_> {
-    /// Makes the initial density of `seed` and `variant` at z = 32 and measures it, on the calling thread; with `more`, also its
-    /// particles in redshift space, and keeps a plane of it.
-    pub(crate) fn measure(
-        &mut self,
-        seed: u64,
-        variant: Variant,
-        more: bool,
-    ) -> Result<Measurement, Failure> {
-        let Self { configuration, universe, triangles, density, .. } = self;
-        let field = Field {
-            realisation: Realisation {
-                amplitude: match variant.amplitude {
-                    Amplitude::Normal => noise::Amplitude::Normal,
-                    Amplitude::Fixed => noise::Amplitude::Fixed,
-                },
-                phase: match variant.phase {
-                    Phase::Original => noise::Phase::Original,
-                    Phase::Inverted => noise::Phase::Inverted,
-                },
-                ..Realisation::new(seed)
-            },
-            potential_amplitude: &universe.potential_amplitude,
-            local: Local { f_nl: configuration.fnl_of(variant.half), g_nl: 0.0 },
-            transfer: &universe.alpha,
-        };
-        let mut partial = vec![[0.0]; self.fine.configuration().n()];
-        linear_density(
-            density,
-            &field,
-            self.fft,
-            Some(&mut *self.fine),
-            &mut self.mesh,
-            &mut partial,
-            &Serial,
-        )?;
-        let binning = Binning::shells(&universe.edges);
-        let (bins, power) = universe.power(density, self.fft.fourier(), &binning, Compensation::None)?;
-        self.rounded.iter_mut().zip(&*density).for_each(|(single, &double)| *single = double as f32);
-        let bispectrum = triangles.measure(&self.rounded, self.single, &mut self.fields)?;
-        let multipoles = if more { Some(multipoles(universe, density, self.fft, self.fine)?) } else { None };
-        let slice = if more { Some(plane(density, self.fft)?) } else { None };
-        Ok(Measurement {
-            k: bins.iter().map(|bin| universe.wavenumber(bin.first)).collect(),
-            modes: bins.iter().map(|bin| bin.count).collect(),
-            theory: universe.theory.clone(),
-            power,
-            squeezed: triangles.slice(&bispectrum),
-            fnl: triangles.fnl(&bispectrum),
-            multipoles,
-            slice,
-        })
+    /// The measurement that an earlier run has left, if it is whole.
+    pub(crate) fn recall(&self, seed: u64, variant: Variant) -> Option<Measurement> {
+        let name = self.name(seed, variant, "universe");
+        match self.plan.store.read(&name) {
+            Found::Nothing => None,
+            Found::Useless(why) => {
+                self.useless(&name, &why);
+                None
+            }
+            Found::Content(mut content) => {
+                let measurement = Measurement::of(&mut content);
+                if measurement.is_none() {
+                    self.useless(&name, "it lacks numbers");
+                }
+                measurement
+            }
+        }
     }
-}
 
-/// The plane z = 0 of the density contrast, x fastest, from its modes, which are lost.
-fn plane(density: &mut [f64], fft: &mut dyn Fft3<f64>) -> Result<Vec<f32>, Failure> {
-    fft.inverse(density)?;
-    let (n, [x, y, _]) = (fft.configuration().n(), fft.configuration().stride());
-    Ok((0..n * n).map(|at| density[at % n * x + at / n * y] as f32).collect())
+    /// Removes what an earlier run has left of a universe.
+    pub(crate) fn forget(&self, seed: u64, variant: Variant) {
+        ["universe", "checkpoint"]
+            .iter()
+            .for_each(|kind| self.plan.store.remove(&self.name(seed, variant, kind)));
+    }
+
+    /// Makes the universe of `seed` and `variant`, or goes on with it, measures it and writes the measurement; with `more`, also measures its
+    /// particles at z = 32 in redshift space and keeps a plane of its density.
+    ///
+    /// # Errors
+    /// Those of the kernels, and of writing.
+    pub(crate) fn make(&self, seed: u64, variant: Variant, more: bool) -> Result<Measurement, Failure> {
+        let (universe, plan) = (self.universe, &self.plan);
+        let checkpoint = self.name(seed, variant, "checkpoint");
+        let useless = |why: &str| self.useless(&checkpoint, why);
+        let resume = || Voyage::resume(universe, plan.store, &checkpoint, &useless);
+        let mut voyage = match resume() {
+            Some(voyage) => {
+                (0..voyage.steps_done(plan)).for_each(|_| (plan.stepped)());
+                voyage
+            }
+            None => self.start(seed, variant, more)?,
+        };
+        voyage.run(universe, plan, &checkpoint)?;
+        let Voyage { early, position, velocity, .. } = voyage;
+        drop(velocity);
+        let measurement = Measurement { early, late: Late::of(universe, self.triangles, &position)? };
+        let content = measurement.content();
+        plan.store.write(&self.name(seed, variant, "universe"), &[Part::Numbers(&content)])?;
+        plan.store.remove(&checkpoint);
+        Ok(measurement)
+    }
+
+    /// Makes the initial conditions and measures them.
+    fn start(&self, seed: u64, variant: Variant, more: bool) -> Result<Voyage, Failure> {
+        let Self { configuration, universe, triangles, .. } = *self;
+        let realisation = Realisation {
+            amplitude: match variant.amplitude {
+                Amplitude::Normal => noise::Amplitude::Normal,
+                Amplitude::Fixed => noise::Amplitude::Fixed,
+            },
+            phase: match variant.phase {
+                Phase::Original => noise::Phase::Original,
+                Phase::Inverted => noise::Phase::Inverted,
+            },
+            ..Realisation::new(seed)
+        };
+        let local = Local { f_nl: configuration.fnl_of(variant.half), g_nl: 0.0 };
+        let start = Start::new(universe, realisation, local)?;
+        let (brick, binning) = (universe.fourier()?, Binning::shells(&universe.edges));
+        let (_, power) = universe.power(&start.density, &brick, &binning, Compensation::None)?;
+        let bispectrum = with_transform(triangles.side, universe.exec, |fft| {
+            let mut fields = vec![0.0; triangles.reals(&*fft)?];
+            triangles.measure(Those::All, &start.rounded(), &brick, fft, &mut fields)
+        })?;
+        let slice = if more { Some(start.plane(universe)?) } else { None };
+        let [position, velocity] = start.particles(universe)?;
+        let multipoles = if more {
+            let fine = fine_side(universe.size)?;
+            Some(with_transform(fine, universe.exec, |fft| multipoles(universe, &position, &velocity, fft))?)
+        } else {
+            None
+        };
+        let (squeezed, fnl) = (triangles.slice_of(&bispectrum), triangles.fnl(&bispectrum));
+        Ok(Voyage::new(Early { power, squeezed, fnl, multipoles, slice }, [position, velocity]))
+    }
+
+    fn name(&self, seed: u64, variant: Variant, kind: &str) -> String {
+        let [amplitude, phase] = variant.names();
+        let fnl = self.configuration.fnl_of(variant.half);
+        format!("{seed:04}_{amplitude}_{phase}_fnl{fnl}.{kind}")
+    }
+
+    fn useless(&self, name: &str, why: &str) {
+        let place = self.plan.store.folder().join(name);
+        (self.say)(&format!("{} cannot be used ({why}): its universe is made again", place.display()));
+    }
 }

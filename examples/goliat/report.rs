@@ -1,4 +1,4 @@
-//! What the suite says in words and numbers: a table for the terminal, and CSV files.
+//! What the suite says in words and numbers: the tables of a terminal.
 
 use std::fmt::Write as _;
 use std::ops::Range;
@@ -6,16 +6,17 @@ use std::time::Duration;
 
 use fixpair::cosmology::Cosmology;
 
+use crate::late_report;
 use crate::redshift_space::Multipoles;
 use crate::statistics::{
     Kind, ROUNDING, band, correlation, deviation, differences, error_of_mean, estimates, mean,
-    power_difference, quadratic_mean, ranges, squeezed_band,
+    power_difference, quadratic_mean, ranges,
 };
 use crate::suite::{Amplitude, Half, Phase, Suite, Variant};
-use crate::universe::REDSHIFT;
+use crate::universe::{END, REDSHIFT};
 
 /// Sigma and what it is worth, as text: a scatter that is only rounding is exact.
-fn sigma_text(ratio: f64) -> String {
+pub(crate) fn sigma_text(ratio: f64) -> String {
     match ratio {
         ratio if ratio < ROUNDING => String::from("exact"),
         ratio if ratio < 0.01 => format!("{ratio:.1e}"),
@@ -57,8 +58,8 @@ pub(crate) fn text(suite: &Suite, threads: usize, elapsed: Duration) -> String {
     let (size, length, fnl) = (configuration.size, configuration.length, configuration.fnl);
     let Cosmology { omega_m, omega_de, n_s, .. } = Cosmology::goliat();
     let mut text = format!(
-        "\nGOLIAT initial conditions: {seeds} seeds x {variants} variants of {size}^3 cells in ({length} Mpc/h)^3 \
-         at z = {REDSHIFT}\n\
+        "\nGOLIAT in miniature: {seeds} seeds x {variants} variants of {size}^3 particles in ({length} Mpc/h)^3, \
+         from z = {REDSHIFT} to z = {END}\n\
          Omega_m = {omega_m}, Omega_Lambda = {omega_de}, n_s = {n_s}, sigma_8 = 0.8; \
          f_NL = 0 and {fnl}; {time:.1} s on {threads} threads\n\n",
         seeds = suite.seeds.len(),
@@ -68,6 +69,7 @@ pub(crate) fn text(suite: &Suite, threads: usize, elapsed: Duration) -> String {
     power_table(&mut text, suite);
     squeezed_table(&mut text, suite);
     multipole_table(&mut text, suite);
+    late_report::write(&mut text, suite);
     text
 }
 
@@ -77,7 +79,7 @@ fn power_table(text: &mut String, suite: &Suite) {
     let ranges = ranges(&bins.k);
     let in_ranges = |ratio: &[f64]| ranges.clone().map(|range| quadratic_mean(&ratio[range]));
     text.push_str(
-        "Power spectrum: scatter from seed to seed, per simulation, in units of sigma_th = sqrt(2/N_k) P,\n\
+        "Initial conditions, power spectrum: scatter from seed to seed, per simulation, in units of sigma_th = sqrt(2/N_k) P,\n\
          and the number of Normal simulations that one simulation is worth\n",
     );
     let _ = writeln!(text, "  {:<32}{:>27}  {:>27}", "", "sigma / sigma_th  ", "worth  ");
@@ -121,7 +123,7 @@ struct Squeezed {
 }
 
 fn squeezed_rows(suite: &Suite) -> Vec<Squeezed> {
-    let read = |kind, half| estimates(suite, kind, half, |bins| bins.fnl);
+    let read = |kind, half| estimates(suite, kind, half, |one| one.early.fnl);
     let row = |title, kind: Kind, values: &[f64], reference: f64, rho| Squeezed {
         title,
         mean: mean(values),
@@ -154,7 +156,7 @@ fn squeezed_rows(suite: &Suite) -> Vec<Squeezed> {
 
 fn squeezed_table(text: &mut String, suite: &Suite) {
     text.push_str(
-        "\nBispectrum: f_NL from all triangles of each field; mean with its error, scatter per simulation\n",
+        "\nInitial conditions, bispectrum: f_NL from all triangles of each field; mean with its error, scatter per simulation\n",
     );
     let _ =
         writeln!(text, "  {:<39}{:>9} {:>11}{:>12}{:>9}{:>9}", "", "mean", "error", "sigma", "worth", "rho");
@@ -177,9 +179,9 @@ fn multipole_table(text: &mut String, suite: &Suite) {
     let bins = suite.bins();
     let ranges = ranges(&bins.k);
     text.push_str(
-        "\nRedshift space: multipoles of the 2LPT particles of the first seed about the z axis, mean over modes\n",
+        "\nInitial conditions, redshift space: multipoles of the 2LPT particles of the first seed about the z axis, mean over modes\n",
     );
-    let _ = writeln!(text, "  {:<32}{:>27}  {:>27}", "", "P_2 / P_0  ", "P_4 / P_0  ");
+    let _ = writeln!(text, "  {:<32}{:>27}  {:>27}", "", "P_2 / P_0", "P_4 / P_0");
     let mut line = |title: &str, value: &dyn Fn(usize, &Range<usize>) -> f64| {
         let _ = write!(text, "  {title:<32}");
         for (l, end) in [(1, "  "), (2, "\n")] {
@@ -200,122 +202,12 @@ fn multipole_table(text: &mut String, suite: &Suite) {
     for half in [Half::Gaussian, Half::Local] {
         for (amplitude, name) in [(Amplitude::Normal, "Normal"), (Amplitude::Fixed, "Fixed")] {
             let variant = Variant { amplitude, phase: Phase::Original, half };
-            if let Some(multipoles) = &suite.get(0, variant).multipoles {
+            if let Some(multipoles) = &suite.get(0, variant).early.multipoles {
                 ratios(&format!("f_NL = {:<6} {name}", suite.configuration.fnl_of(half)), multipoles);
             }
         }
     }
     ratios("Kaiser 1987, on the same modes", &suite.configuration.linear_multipoles);
-}
-
-/// Name and content of each CSV file.
-pub(crate) fn tables(suite: &Suite) -> [(&'static str, String); 5] {
-    [
-        ("power.csv", power_csv(suite)),
-        ("bispectrum.csv", bispectrum_csv(suite)),
-        ("multipoles.csv", multipoles_csv(suite)),
-        ("squeezed.csv", squeezed_csv(suite)),
-        ("summary.csv", summary_csv(suite)),
-    ]
-}
-
-/// Every seed and variant, in the order in which they were made.
-fn each(suite: &Suite) -> impl Iterator<Item = (usize, Variant, String)> {
-    (0..suite.seeds.len()).flat_map(move |place| {
-        Variant::all().into_iter().map(move |variant| {
-            let [amplitude, phase] = variant.names();
-            let fnl = suite.configuration.fnl_of(variant.half);
-            (place, variant, format!("{},{amplitude},{phase},{fnl}", suite.seeds[place]))
-        })
-    })
-}
-
-fn power_csv(suite: &Suite) -> String {
-    let mut csv =
-        String::from("seed,amplitude,phase,f_NL,k [h/Mpc],modes,linear P [(Mpc/h)^3],P [(Mpc/h)^3]\n");
-    for (place, variant, names) in each(suite) {
-        let bins = suite.get(place, variant);
-        for (((k, modes), theory), power) in bins.k.iter().zip(&bins.modes).zip(&bins.theory).zip(&bins.power)
-        {
-            let _ = writeln!(csv, "{names},{k},{modes},{theory},{power}");
-        }
-    }
-    csv
-}
-
-fn bispectrum_csv(suite: &Suite) -> String {
-    let mut csv = String::from(
-        "seed,amplitude,phase,f_NL,k [h/Mpc],triples of modes,linear B for f_NL = 1 [(Mpc/h)^6],B [(Mpc/h)^6]\n",
-    );
-    for (place, variant, names) in each(suite) {
-        let slice = &suite.get(place, variant).squeezed;
-        for (i, value) in slice.value.iter().enumerate() {
-            let (k, count, template) = (slice.k[i], slice.count[i], slice.template[i]);
-            let _ = writeln!(csv, "{names},{k},{count},{template},{value}");
-        }
-    }
-    csv
-}
-
-fn multipoles_csv(suite: &Suite) -> String {
-    let mut csv = String::from(
-        "seed,amplitude,phase,f_NL,k [h/Mpc],modes,P_0 [(Mpc/h)^3],P_2 [(Mpc/h)^3],P_4 [(Mpc/h)^3]\n",
-    );
-    for (place, variant, names) in each(suite) {
-        let bins = suite.get(place, variant);
-        let Some([p0, p2, p4]) = &bins.multipoles else { continue };
-        for (i, (k, modes)) in bins.k.iter().zip(&bins.modes).enumerate() {
-            let _ = writeln!(csv, "{names},{k},{modes},{},{},{}", p0[i], p2[i], p4[i]);
-        }
-    }
-    csv
-}
-
-fn squeezed_csv(suite: &Suite) -> String {
-    let mut csv = String::from("seed,amplitude,phase,f_NL,f_NL measured\n");
-    for (place, variant, names) in each(suite) {
-        let _ = writeln!(csv, "{names},{}", suite.get(place, variant).fnl);
-    }
-    csv
-}
-
-/// Mean and scatter of each type, bin by bin, with sigma/sigma_th of matched differences.
-fn summary_csv(suite: &Suite) -> String {
-    let bins = suite.bins();
-    let mut csv = String::from(
-        "quantity,type,f_NL,k [h/Mpc],modes or triples,mean,standard deviation,sigma/sigma_th\n",
-    );
-    for half in [Half::Gaussian, Half::Local] {
-        let fnl = suite.configuration.fnl_of(half);
-        for kind in Kind::ALL {
-            let band = band(suite, kind, half);
-            for (i, (k, modes)) in bins.k.iter().zip(&bins.modes).enumerate() {
-                let (mean, deviation, ratio) = (band.mean[i], band.deviation[i], band.ratio[i]);
-                let _ = writeln!(csv, "P,{},{fnl},{k},{modes},{mean},{deviation},{ratio}", kind.name());
-            }
-        }
-    }
-    let slice = &bins.squeezed;
-    for half in [Half::Gaussian, Half::Local] {
-        let fnl = suite.configuration.fnl_of(half);
-        for kind in Kind::ALL {
-            let band = squeezed_band(suite, kind, half);
-            for (i, (k, triples)) in slice.k.iter().zip(&slice.count).enumerate() {
-                let (mean, deviation, ratio) = (band.mean[i], band.deviation[i], band.ratio[i]);
-                let _ = writeln!(csv, "B,{},{fnl},{k},{triples},{mean},{deviation},{ratio}", kind.name());
-            }
-        }
-    }
-    for kind in Kind::ALL {
-        for (name, matched) in [("matched difference of P", true), ("unmatched difference of P", false)] {
-            let ratio = power_difference(suite, kind, matched).ratio;
-            for ((k, modes), ratio) in bins.k.iter().zip(&bins.modes).zip(ratio) {
-                let _ =
-                    writeln!(csv, "{name},{},{},{k},{modes},,,{ratio}", kind.name(), suite.configuration.fnl);
-            }
-        }
-    }
-    csv
 }
 
 #[cfg(test)]

@@ -6,7 +6,8 @@
 
 use std::ops::Range;
 
-use crate::suite::{Amplitude, Half, Measurement, Phase, Suite, Variant};
+use crate::measurement::{Bins, Measurement};
+use crate::suite::{Amplitude, Half, Phase, Suite, Variant};
 
 /// Below this ratio to `sigma_th` a scatter is the rounding of sums: the estimate is exact.
 pub(crate) const ROUNDING: f64 = 1e-6;
@@ -32,7 +33,7 @@ impl Kind {
         }
     }
 
-    const fn amplitude(self) -> Amplitude {
+    pub(crate) const fn amplitude(self) -> Amplitude {
         match self {
             Self::Normal | Self::NormalPaired => Amplitude::Normal,
             Self::Fixed | Self::FixedPaired => Amplitude::Fixed,
@@ -104,7 +105,7 @@ pub(crate) fn estimates(
 /// Mean and scatter of the squeezed bispectrum of one type of simulation, triangle by triangle; its ratio is to sigma in a Gaussian field.
 pub(crate) fn squeezed_band(suite: &Suite, kind: Kind, half: Half) -> Band {
     let sigma = &suite.bins().squeezed.sigma;
-    let column = |i: usize| estimates(suite, kind, half, |bins| bins.squeezed.value[i]);
+    let column = |i: usize| estimates(suite, kind, half, |one| one.early.squeezed[i]);
     Band::new(kind, (0..sigma.len()).map(column), sigma)
 }
 
@@ -125,7 +126,7 @@ pub(crate) struct Band {
 }
 
 impl Band {
-    fn new(kind: Kind, columns: impl Iterator<Item = Vec<f64>>, theory: &[f64]) -> Self {
+    pub(crate) fn new(kind: Kind, columns: impl Iterator<Item = Vec<f64>>, theory: &[f64]) -> Self {
         let columns: Vec<_> = columns.collect();
         Self {
             mean: columns.iter().map(|column| mean(column)).collect(),
@@ -136,14 +137,14 @@ impl Band {
 }
 
 /// sqrt(2/N_k) P for each bin.
-pub(crate) fn sigma_theory(bins: &Measurement) -> Vec<f64> {
+pub(crate) fn sigma_theory(bins: &Bins) -> Vec<f64> {
     bins.theory.iter().zip(&bins.modes).map(|(power, &modes)| power * (2.0 / modes as f64).sqrt()).collect()
 }
 
 /// The band of the power spectrum of one type of simulation.
 pub(crate) fn band(suite: &Suite, kind: Kind, half: Half) -> Band {
     let theory = sigma_theory(suite.bins());
-    let column = |i: usize| estimates(suite, kind, half, |bins| bins.power[i]);
+    let column = |i: usize| estimates(suite, kind, half, |one| one.early.power[i]);
     Band::new(kind, (0..theory.len()).map(column), &theory)
 }
 
@@ -161,7 +162,7 @@ pub(crate) fn power_difference(suite: &Suite, kind: Kind, matched: bool) -> Diff
     let (mut ratio, mut rho) = (Vec::new(), Vec::new());
     for (i, theory) in theory.iter().enumerate() {
         let [local, gaussian] =
-            [Half::Local, Half::Gaussian].map(|half| estimates(suite, kind, half, |bins| bins.power[i]));
+            [Half::Local, Half::Gaussian].map(|half| estimates(suite, kind, half, |one| one.early.power[i]));
         ratio.push(kind.sigma(&differences(&local, &gaussian, matched)) / theory);
         rho.push(if matched { correlation(&local, &gaussian) } else { None });
     }
@@ -189,13 +190,13 @@ pub(crate) fn quadratic_mean(values: &[f64]) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
-    use crate::bispectrum::Slice;
+    use crate::measurement::{Early, Late};
     use crate::suite::Configuration;
 
-    /// Two bins; the power of seed s is 10 + d(s) with the sign of the phase on an odd part, halved if fixed.
-    fn suite() -> Suite {
+    /// Two bins; the power at both times of seed s is 10 + d(s) with the sign of the phase on an odd part, halved if fixed.
+    pub(crate) fn suite() -> Suite {
         let draws = [1.0, -2.0, 0.5, 3.0];
         let mut measurements = Vec::new();
         for draw in draws {
@@ -203,21 +204,25 @@ mod tests {
                 let size = if variant.amplitude == Amplitude::Fixed { 0.5 } else { 1.0 };
                 let sign = if variant.phase == Phase::Inverted { -1.0 } else { 1.0 };
                 let shift = if variant.half == Half::Local { 4.0 } else { 0.0 };
-                measurements.push(Measurement {
-                    k: vec![0.1, 0.2],
-                    modes: vec![8, 200],
-                    theory: vec![10.0; 2],
-                    power: vec![10.0 + size * draw + shift, 10.0 + sign * draw + shift],
-                    squeezed: Slice::default(),
-                    fnl: shift * 25.0 + sign * draw,
-                    multipoles: None,
-                    slice: None,
-                });
+                let power = vec![10.0 + size * draw + shift, 10.0 + sign * draw + shift];
+                let late =
+                    Late { matter: power.clone(), halos: power.clone(), count: 100, ..Late::default() };
+                let early = Early { power, fnl: shift * 25.0 + sign * draw, ..Early::default() };
+                measurements.push(Measurement { early, late });
             }
         }
         let configuration =
             Configuration { size: 16, length: 1.0, fnl: 100.0, linear_multipoles: Default::default() };
-        Suite::new(configuration, (1..=4).collect(), measurements).unwrap()
+        let bins = Bins {
+            k: vec![0.1, 0.2],
+            modes: vec![8, 200],
+            theory: vec![10.0; 2],
+            late_theory: vec![10.0; 2],
+            late_alpha: vec![1e3; 2],
+            squeezed_growth: 1.0,
+            ..Bins::default()
+        };
+        Suite::new(configuration, (1..=4).collect(), bins, measurements).unwrap()
     }
 
     #[test]
@@ -273,7 +278,8 @@ mod tests {
     fn a_suite_with_a_broken_number_is_refused() {
         let suite = suite();
         let mut measurements = suite.measurements_for_test();
-        measurements[3].power[0] = f64::NAN;
-        assert!(Suite::new(suite.configuration, suite.seeds, measurements).is_err());
+        measurements[3].early.power[0] = f64::NAN;
+        let bins = suite.bins().clone();
+        assert!(Suite::new(suite.configuration, suite.seeds, bins, measurements).is_err());
     }
 }

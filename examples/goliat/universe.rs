@@ -1,12 +1,12 @@
 //! What all initial conditions of a suite share: linear theory on the mesh, spectra of modes, and transforms.
 
 use fixpair::cosmology::{
-    Convention, Cosmology, Linear, Table, alpha_table, mode_table_length, potential_amplitude_table,
+    Convention, Cosmology, Linear, Table, alpha_table, growth, mode_table_length, potential_amplitude_table,
 };
 use fixpair::estimate::binning::{Bin, Binning, normalise, read_sums};
 use fixpair::estimate::compensation::Compensation;
 use fixpair::estimate::power::{power_sums, power_sums_scratch};
-use fixpair::exec::Serial;
+use fixpair::exec::Exec;
 use fixpair::fft::{Tables, Transform, next_side};
 use fixpair::initial::conditions::{InitialConditions, Order};
 use fixpair::initial::modes::scale_by_table;
@@ -23,8 +23,16 @@ use crate::memory::Memory;
 /// Redshift of the initial conditions.
 pub(crate) const REDSHIFT: f64 = 32.0;
 
+/// Redshift to which they evolve.
+pub(crate) const END: f64 = 1.0;
+
+/// Largest wavenumber of a bispectrum in k_f, as in the paper: its cost grows with the sixth power or so, its worth with the third at most.
+const REACH: usize = 120;
+
 /// Linear theory of one box on one mesh.
-pub(crate) struct Universe {
+pub(crate) struct Universe<'a> {
+    /// Who runs the loops.
+    pub(crate) exec: &'a dyn Exec,
     /// Cells a side.
     pub(crate) size: usize,
     /// Side of the box, Mpc/h.
@@ -39,14 +47,16 @@ pub(crate) struct Universe {
     pub(crate) hubble: f64,
     /// Unit shells: edges in |n|^2.
     pub(crate) edges: Vec<u64>,
-    /// Linear theory averaged over the modes of each unit shell, (Mpc/h)^3.
+    /// Linear theory at the start averaged over the modes of each unit shell, (Mpc/h)^3.
     pub(crate) theory: Vec<f64>,
+    /// What linear theory multiplies densities by from the start to the end.
+    pub(crate) growth: f64,
 }
 
-impl Universe {
+impl<'a> Universe<'a> {
     /// # Errors
     /// If the embedded spectrum cannot be read, or the box is too extreme for it.
-    pub(crate) fn new(size: usize, length: f64) -> Result<Self, Failure> {
+    pub(crate) fn new(size: usize, length: f64, exec: &'a dyn Exec) -> Result<Self, Failure> {
         let Spectrum { k, value, .. } = embedded()?;
         let cosmology = Cosmology::goliat();
         let conditions = InitialConditions {
@@ -62,10 +72,12 @@ impl Universe {
         let poisson = conditions.poisson()?;
         let mut potential_amplitude = vec![0.0; mode_table_length(size)?];
         let mut alpha = potential_amplitude.clone();
-        potential_amplitude_table(&Serial, &poisson, size, length, &mut potential_amplitude)?;
-        alpha_table(&Serial, &poisson, size, length, &mut alpha)?;
+        potential_amplitude_table(exec, &poisson, size, length, &mut potential_amplitude)?;
+        alpha_table(exec, &poisson, size, length, &mut alpha)?;
         let a = 1.0 / (1.0 + REDSHIFT);
+        let [early, late] = [a, 1.0 / (1.0 + END)].map(|a| growth(&cosmology, a));
         let mut universe = Self {
+            exec,
             size,
             length,
             potential_amplitude,
@@ -74,6 +86,7 @@ impl Universe {
             hubble: a * 100.0 * cosmology.expansion(a)?,
             edges: (1..=size as u64 / 2).map(|b| b * b).collect(),
             theory: Vec::new(),
+            growth: late?.d / early?.d,
         };
         universe.theory = universe.linear_power(&universe.edges)?;
         Ok(universe)
@@ -94,7 +107,7 @@ impl Universe {
         let brick = self.fourier()?;
         let mut modes = vec![0.0; brick.reals()];
         modes.iter_mut().step_by(2).for_each(|re| *re = 1.0);
-        scale_by_table(&mut modes, &brick, table, &Serial)?;
+        scale_by_table(&mut modes, &brick, table, self.exec)?;
         Ok(modes)
     }
 
@@ -109,7 +122,16 @@ impl Universe {
         let mut sums = vec![0; binning.words(1)?];
         let mut scratch = Memory::new(power_sums_scratch(brick, binning, 1)?);
         let compensation = [compensation];
-        power_sums(&mut sums, &[modes], &[[0, 0]], &compensation, brick, binning, scratch.bytes(), &Serial)?;
+        power_sums(
+            &mut sums,
+            &[modes],
+            &[[0, 0]],
+            &compensation,
+            brick,
+            binning,
+            scratch.bytes(),
+            self.exec,
+        )?;
         let mut bins = vec![Bin::default(); binning.bins()?];
         let mut power = vec![0.0; bins.len() * binning.multipoles()];
         read_sums(&mut bins, &mut power, &sums, binning, 1)?;
@@ -135,31 +157,39 @@ impl Universe {
     }
 }
 
-/// The least side on which squares of fields of side `size`, and triangles of modes below its Nyquist wavenumber, are free
-/// of aliasing.
+/// The least side on which squares of fields of side `size` are free of aliasing.
 pub(crate) fn fine_side(size: usize) -> Result<usize, Failure> {
     Ok(next_side(3 * size / 2).ok_or("the mesh is too large")?)
+}
+
+/// The largest |n| of a bispectrum, and the least side on which its triangles are free of aliasing.
+pub(crate) fn bispectrum_sides(size: usize) -> Result<[usize; 2], Failure> {
+    let reach = REACH.min(size / 2);
+    Ok([reach, fine_side(2 * reach)?])
 }
 
 /// Lends a transform of side n for the time of a call.
 pub(crate) fn with_transform<T: Real, R>(
     n: usize,
+    exec: &dyn Exec,
     body: impl FnOnce(&mut Transform<'_, T>) -> Result<R, Failure>,
 ) -> Result<R, Failure> {
     let mut tables = Memory::new(Tables::<T>::layout(n)?);
     let tables = Tables::<T>::new(n, tables.bytes())?;
     let mut workspace = Memory::new(Transform::<T>::workspace(n)?);
     let cells = Brick::whole(n, Space::Configuration)?;
-    body(&mut Transform::new(&tables, cells, workspace.bytes(), &Serial)?)
+    body(&mut Transform::new(&tables, cells, workspace.bytes(), exec)?)
 }
 
 #[cfg(test)]
 mod tests {
+    use fixpair::exec::Serial;
+
     use super::*;
 
     #[test]
     fn theory_is_the_table_scaled_back() {
-        let universe = Universe::new(16, 500.0).unwrap();
+        let universe = Universe::new(16, 500.0, &Serial).unwrap();
         let Spectrum { k, value, .. } = embedded().unwrap();
         let cosmology = Cosmology::goliat();
         let linear = Linear::from_power(Table::new(&k, &value).unwrap(), cosmology.n_s).unwrap();
@@ -170,5 +200,7 @@ mod tests {
         assert!((universe.theory[0] / first - 1.0).abs() < 0.3, "{} {first}", universe.theory[0]);
         // Matter alone grows as a: f is 1 but for the last traces of Lambda.
         assert!((universe.growth_rate() - 1.0).abs() < 1e-3);
+        // D(z = 1), of the same background.
+        assert!((universe.growth * growth / 0.622_814_340_3 - 1.0).abs() < 1e-6);
     }
 }

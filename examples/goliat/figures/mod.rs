@@ -1,11 +1,12 @@
-//! The figures, in the style of the paper's appendix: Normal in red, Fixed in blue, their inverted in magenta and
+//! The figures, in the style of the paper: Normal in red, Fixed in blue, their inverted in magenta and
 //! cyan; a light shade is the scatter of one simulation, a dark one the error of the mean.
 
 mod bispectrum;
 mod multipoles;
-mod power;
 mod ratio;
+mod scatter;
 mod slice;
+mod spectra;
 mod squeezed;
 
 use crate::Failure;
@@ -24,10 +25,11 @@ const GREY: Colour = Colour::new(110, 110, 110);
 ///
 /// # Errors
 /// If the suite lacks the slices or multipoles of its first seed.
-pub(crate) fn all(suite: &Suite) -> Result<[(&'static str, Drawing); 6], Failure> {
+pub(crate) fn all(suite: &Suite) -> Result<[(&'static str, Drawing); 7], Failure> {
     Ok([
+        ("spectra", spectra::draw(suite)),
+        ("scatter", scatter::draw(suite)),
         ("slice", slice::draw(suite)?),
-        ("power", power::draw(suite)),
         ("ratio", ratio::draw(suite)),
         ("squeezed", squeezed::draw(suite)),
         ("bispectrum", bispectrum::draw(suite)),

@@ -15,7 +15,7 @@ pub(super) fn draw(suite: &Suite) -> Result<Drawing, Failure> {
         for amplitude in [Amplitude::Normal, Amplitude::Fixed] {
             let variant = Variant { amplitude, phase: Phase::Original, half };
             let multipoles =
-                suite.get(0, variant).multipoles.as_ref().ok_or("the first seed has no multipoles")?;
+                suite.get(0, variant).early.multipoles.as_ref().ok_or("the first seed has no multipoles")?;
             for (l, power) in multipoles.iter().enumerate() {
                 axes.line(&mut drawing, &bins.k, &over(power, &bins.theory), pen(amplitude, l));
             }

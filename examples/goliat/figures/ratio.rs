@@ -34,7 +34,7 @@ fn draw_means(drawing: &mut Drawing, suite: &Suite, half: Half, axes: &Axes, ban
 
     for (amplitude, shade) in [(Amplitude::Normal, NORMAL), (Amplitude::Fixed, FIXED)] {
         for seed in 0..suite.seeds.len() {
-            let power = &suite.get(seed, Variant { amplitude, phase: Phase::Original, half }).power;
+            let power = &suite.get(seed, Variant { amplitude, phase: Phase::Original, half }).early.power;
             let ratio: Vec<_> = power.iter().zip(&normal.mean).map(|(power, mean)| power / mean).collect();
             axes.line(drawing, k, &ratio, Pen::solid(shade.fade(0.3), 0.6));
         }

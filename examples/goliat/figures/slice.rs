@@ -41,7 +41,7 @@ pub(super) fn draw(suite: &Suite) -> Result<Drawing, Failure> {
     let height = MARGIN_TOP + 2.0 * PANEL + ROW_GAP + MARGIN_BOTTOM + 72.0;
     let mut drawing = Drawing::new(width, height);
     let slice = |amplitude, phase, half| {
-        let slice = suite.get(0, Variant { amplitude, phase, half }).slice.as_deref();
+        let slice = suite.get(0, Variant { amplitude, phase, half }).early.slice.as_deref();
         let cells = suite.configuration.size * suite.configuration.size;
         slice.filter(|slice| slice.len() == cells).ok_or("the first seed has no slice of its density")
     };

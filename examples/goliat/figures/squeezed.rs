@@ -37,7 +37,7 @@ fn holding(values: impl Iterator<Item = f64>, margin: f64) -> Axis {
 }
 
 fn draw_pairs(drawing: &mut Drawing, suite: &Suite, area: Area) {
-    let value = |seed, variant| suite.get(seed, variant).fnl;
+    let value = |seed, variant| suite.get(seed, variant).early.fnl;
     let all = (0..suite.seeds.len()).flat_map(|seed| Variant::all().map(|variant| value(seed, variant)));
     let fnl = suite.configuration.fnl;
     let axis = holding(all.chain([0.0, fnl]), 0.08);
@@ -81,7 +81,7 @@ struct Strip {
 
 fn strips(suite: &Suite) -> Vec<Strip> {
     let fnl = suite.configuration.fnl;
-    let read = |kind, half| estimates(suite, kind, half, |bins| bins.fnl);
+    let read = |kind, half| estimates(suite, kind, half, |one| one.early.fnl);
     let strip = |name: String, values: Vec<f64>, truth: f64, colour| Strip {
         name,
         errors: values.into_iter().map(|value| value - truth).collect(),
