@@ -192,7 +192,6 @@ static void X(refuse_spheres)(void) {
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, centres[4] = -(double)INFINITY);
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, radii[1] = (double)NAN);
     REFUSED(FIXPAIR_ERROR_RANGE, radii[1] = -1.0);
-    REFUSED(FIXPAIR_ERROR_RANGE, radii[1] = 0.26 * BOX);
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, t.a.d[1] = (double)NAN);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.d[1] = 0.45);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.d[1] = 1.0);

@@ -58,7 +58,7 @@ pub(crate) fn time_cases(cases: &mut Cases) {
     // Exact derivatives; a run begins with the four-point gradient.
     let law = |gradient| Hash::new().integers(&[0, gradient, 0, 2]).doubles(&[0.0]);
     cases.add("force_law_init", law(0));
-    let gravity = law(2).doubles(&members).doubles(&[1000.0, 100.0, COLA_EXPONENT]).integers(&[0, 2]);
+    let gravity = law(2).doubles(&members).doubles(&[0.0, 100.0, COLA_EXPONENT]).integers(&[0, 2]);
     cases.add("gravity_init", gravity);
     let layout = force_scratch(N).expect("scratch");
     cases.add("force_scratch", Hash::new().integers(&[layout.size as u64, layout.align as u64]));

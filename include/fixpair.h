@@ -36,6 +36,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* Positions have reached the next scale factor of the list. */
+#define FIXPAIR_EVENT_STEP 0
+
+/* An output is in its arrays. */
+#define FIXPAIR_EVENT_OUTPUT 1
+
 /* Done. */
 #define FIXPAIR_OK 0
 
@@ -191,12 +197,6 @@
 
 /* The exponent n_LPT of COLA that its authors recommend. */
 #define FIXPAIR_COLA_EXPONENT (-2.5)
-
-/* Positions have reached the next scale factor of the list. */
-#define FIXPAIR_EVENT_STEP 0
-
-/* An output is in its arrays. */
-#define FIXPAIR_EVENT_OUTPUT 1
 
 /* So many times the mean density of matter: 200 for 200b. */
 #define FIXPAIR_OVERDENSITY_MEAN 0
@@ -584,10 +584,10 @@ typedef struct fixpair_positions_f32 {
  * A Tree-PM host adds 1/r^2 [erfc(r/2 r_s) + r/(r_s sqrt pi) exp(-r^2/4 r_s^2)] of Newton's force for near pairs (Springel 2005,
  * astro-ph/0505010, eq. 19-21).
  *
- * Error of a pair's force between 3 and 3.5 cells, r.m.s. over places and directions (less beyond): with FOUR_POINT gradients CIC 5%, TSC and PCS 2.2%, 1.3% if
- * the Laplacian is FOUR_POINT too; 1.8% for PCS with EXACT, FOUR_POINT, (PCS, 1), 0.53 L/n. An EXACT gradient rings along the axes unless a split smooths
- * it, and more so with a window divided out. Tree and mesh with a split of 1.25 L/n: 1.2% (CIC), 0.4% (TSC, PCS), 0.03% with PCS and EXACT; 5 to 9% too
- * weak if the window is not divided out.
+ * Error of a pair's force between 3 and 3.5 cells, r.m.s. over places and directions (less beyond): with FOUR_POINT gradients CIC 5%, TSC and PCS
+ * 2.2%, 1.3% if the Laplacian is FOUR_POINT too; 1.8% for PCS with EXACT, FOUR_POINT, (PCS, 1), 0.53 L/n. An EXACT gradient rings along the axes
+ * unless a split smooths it, and more so with a window divided out. Tree and mesh with a split of 1.25 L/n: 1.2% (CIC), 0.4% (TSC, PCS), 0.03% with
+ * PCS and EXACT; 5 to 9% too weak if the window is not divided out.
  *
  * Fill it with fixpair_force_law_init, then change what is to be otherwise. Functions refuse with FIXPAIR_ERROR_VERSION, _CHOICE and
  * _NOT_FINITE what these say, and with FIXPAIR_ERROR_RANGE a power that is not 1 to 4 or a negative split scale.
@@ -608,8 +608,8 @@ typedef struct fixpair_force_law {
 } fixpair_force_law;
 
 /*
- * What a drift or a kick adds: factor times velocity or force, and first psi1 + second psi2, with psi1 and psi2 the displacements of both orders over their
- * growth, D and D2.
+ * What a drift or a kick adds: factor times velocity or force, and first psi1 + second psi2, with psi1 and psi2 the displacements of both orders
+ * over their growth, D and D2.
  */
 typedef struct fixpair_step_factors {
   /* d, of the velocity; or k, of the force. */
@@ -649,8 +649,8 @@ typedef struct fixpair_epoch {
 } fixpair_epoch;
 
 /*
- * Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA needs. From
- * modes: fixpair_displace_f64 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
+ * Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA
+ * needs. From modes: fixpair_displace_f64 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
  */
 typedef struct fixpair_displacements_f64 {
   /* First order, one a particle. */
@@ -687,7 +687,14 @@ typedef struct fixpair_progress {
   struct fixpair_epoch epoch;
 } fixpair_progress;
 
-/* Who is told of progress. It may read the particles of the run and of the output arrays, and save them, but not change them. */
+/*
+ * Who is told of progress, on the thread that the run was called from. It may read the particles of the run and of the output arrays, and save
+ * them, but not change them; and it may call the library with other scratch and meshes, also with the run's transform and threads.
+ *
+ * Saved after a step, particles and epoch are what a later call goes on from. Outputs told of by then count as written; so where one could not be
+ * saved, save nothing after it. The step after an answer other than 0 is still told of. The last step is told of before its final kick: save the
+ * end of a run after the call.
+ */
 typedef struct fixpair_observer {
   /* Handed to observe as it is. */
   void *context;
@@ -696,8 +703,8 @@ typedef struct fixpair_observer {
 } fixpair_observer;
 
 /*
- * Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA needs. From
- * modes: fixpair_displace_f32 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
+ * Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA
+ * needs. From modes: fixpair_displace_f32 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
  */
 typedef struct fixpair_displacements_f32 {
   /* First order, one a particle. */
@@ -1921,10 +1928,10 @@ fixpair_status_t fixpair_force_scratch(struct fixpair_layout *scratch, size_t n)
 /*
  * From modes of the density to modes of F = -grad inverse-Laplacian delta, all three components in one pass.
  *
- * F is in the unit of L: for a linear field the Zel'dovich displacement x - q itself. The peculiar acceleration is 3/2 Omega_m H0^2/a^2 times F where F is in
- * comoving lengths. A particle of weight w pulls another with w/mass L^3/(4 pi r^2). Read out with the window of the deposit, the force of any law
- * conserves momentum to rounding, and no particle pulls itself. k = 0 and the Nyquist modes (|n_a| = n/2 on any axis: an odd derivative has no value
- * there) become zero. A whole force, beside the density two meshes:
+ * F is in the unit of L: for a linear field the Zel'dovich displacement x - q itself. The peculiar acceleration is 3/2 Omega_m H0^2/a^2 times F
+ * where F is in comoving lengths. A particle of weight w pulls another with w/mass L^3/(4 pi r^2). Read out with the window of the deposit, the
+ * force of any law conserves momentum to rounding, and no particle pulls itself. k = 0 and the Nyquist modes (|n_a| = n/2 on any axis: an odd
+ * derivative has no value there) become zero. A whole force, beside the density two meshes:
  *
  *    memset(x, 0, len * sizeof *x);
  *    fixpair_deposit_f64(x, len, &cells, ...);
@@ -1933,7 +1940,8 @@ fixpair_status_t fixpair_force_scratch(struct fixpair_layout *scratch, size_t n)
  *    fft.inverse(fft.context, x);                        and y, z
  *    fixpair_read_out_f64(force_x, 3, x, len, &cells, ...);    and y, z, with the same window
  *
- * In/Out: x     len reals on the brick: F_k, the forward transform of deposited weights, not normalised; then the modes of F_x, whose inverse transform,
+ * In/Out: x     len reals on the brick: F_k, the forward transform of deposited weights, not normalised; then the modes of F_x, whose inverse
+ *         transform,
  *               not normalised, is the force on the cells
  * Out: y, z     len reals each: the modes of F_y and F_z
  * In:  brick    of Fourier space
@@ -2010,7 +2018,8 @@ fixpair_status_t fixpair_force_f32(float *out,
 /*
  * The inverse Laplacian of delta: phi_k = -S/(W^power K2) delta_k, in the unit of L^2; the peculiar potential is 3/2 Omega_m H0^2/a times it.
  *
- * For hosts that take differences in real space, which gives them the force of the law with that gradient, and for energies. The law's own gradient means nothing here.
+ * For hosts that take differences in real space, which gives them the force of the law with that gradient, and for energies. The law's own gradient
+ * means nothing here.
  *
  * In/Out: modes  len reals on the brick: F_k as for fixpair_forces_f64, then phi_k
  * In:  brick, law, box_size, mass, scratch, scratch_len, exec  as fixpair_forces_f64
@@ -2067,9 +2076,10 @@ fixpair_status_t fixpair_kick_scratch_f32(struct fixpair_layout *scratch,
 /*
  * Kicks particles: u_i <- keep u_i + force F(x_i) + first psi1_i + second psi2_i, F(x_i) = sum_c W(x_c - x_i) F_c as fixpair_read_out_f64 has it.
  *
- * Peculiar velocities go from a0 to a1 with f of fixpair_kick_factors and H0 (100 for km/s and Mpc/h): keep = a0/a1, force = f.factor H0/a1, and for COLA
- * first = f.first H0/(a1 D), second = f.second H0/(a1 D2), D and D2 (fixpair_growth_factors) of the time at which psi1 and psi2 are the displacements of
- * both orders. Sums over the four terms are in double precision and rounded once; the result is the same, bit for bit, on any number of threads.
+ * Peculiar velocities go from a0 to a1 with f of fixpair_kick_factors and H0 (100 for km/s and Mpc/h): keep = a0/a1, force = f.factor H0/a1, and
+ * for COLA first = f.first H0/(a1 D), second = f.second H0/(a1 D2), D and D2 (fixpair_growth_factors) of the time at which psi1 and psi2 are the
+ * displacements of both orders. Sums over the four terms are in double precision and rounded once; the result is the same, bit for bit, on any
+ * number of threads.
  *
  * In/Out: velocity  u; may share an array of structs with the positions
  * In:  position
@@ -2131,9 +2141,9 @@ fixpair_status_t fixpair_kick_f32(const struct fixpair_components_f32 *velocity,
 /*
  * Moves particles: x_i <- x_i + factor u_i + first psi1_i + second psi2_i, wrapped into [0, L).
  *
- * With f of fixpair_drift_factors, and peculiar velocities of the time `at`: factor = f.factor at/H0, and for COLA first = f.first/D, second = f.second/D2, D,
- * D2, psi1 and psi2 as for fixpair_kick_f64. Sums are in double precision and rounded once; no position becomes L itself. The result is the same, bit
- * for bit, on any number of threads.
+ * With f of fixpair_drift_factors, and peculiar velocities of the time `at`: factor = f.factor at/H0, and for COLA first = f.first/D, second =
+ * f.second/D2, D, D2, psi1 and psi2 as for fixpair_kick_f64. Sums are in double precision and rounded once; no position becomes L itself. The
+ * result is the same, bit for bit, on any number of threads.
  *
  * In/Out: position  any finite numbers before; may share an array of structs with the velocities
  * In:  velocity  u
@@ -2176,15 +2186,15 @@ fixpair_status_t fixpair_drift_f32(const struct fixpair_components_f32 *position
 /*
  * The factors of a drift, for any integrator: x += factor v + first psi1 + second psi2.
  *
- * Canonical velocity v = a^2 dx/dt/H0 in the unit of x: v = a u/H0 for the peculiar velocity u (H0 = 100 km/s per Mpc/h). At its time `at`, usually between
- * `from` and `to`, it is known; E = H/H0, D the growth factor, G = a^2 E f D:
+ * Canonical velocity v = a^2 dx/dt/H0 in the unit of x: v = a u/H0 for the peculiar velocity u (H0 = 100 km/s per Mpc/h). At its time `at`, usually
+ * between `from` and `to`, it is known; E = H/H0, D the growth factor, G = a^2 E f D:
  *
  *   FastPM    factor = [D(to) - D(from)]/G(at)
  *   leapfrog  factor = int da/(a^3 E)
  *   COLA      factor = int (a/at)^n da/(a^3 E), for v - v_LPT; first = D(to) - D(from) - factor G(at), second the same of D2
  *
- * psi1 and psi2 are the displacements of both orders over D and over D2, so psi1 = x - q today in linear theory; first and second are 0 but for COLA.
- * v is the full velocity.
+ * psi1 and psi2 are the displacements of both orders over D and over D2, so psi1 = x - q today in linear theory; first and second are 0 but for
+ * COLA. v is the full velocity.
  *
  * Out: factors
  * In:  cosmology
@@ -2249,8 +2259,9 @@ fixpair_status_t fixpair_logarithmic_steps(double *scale_factors, size_t len, do
  */
 
 /*
- * Fills the gravity: the GOLIAT cosmology, a box of 1000 Mpc/h, km/s, FastPM, cloud in cell, and the force law of fixpair_force_law_init but for a gradient of
- * four points, which does not see the lattice of the particles: FastPM's own choice.
+ * Fills the gravity: the GOLIAT cosmology, km/s and Mpc/h, FastPM, cloud in cell, and the force law of fixpair_force_law_init but for a gradient of
+ * four points, which does not see the lattice of the particles: FastPM's own choice. box_size is 0, which runs refuse: set it, and the cosmology
+ * that the initial conditions have.
  *
  * Out: gravity
  * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT
@@ -2281,22 +2292,22 @@ fixpair_status_t fixpair_evolve_scratch_f32(struct fixpair_layout *scratch,
  * Moves particles of one mass under their gravity, by the particle-mesh method, through a list of scale factors: from initial conditions to today.
  *
  * Step i has the force at a_i, kicks velocities to the middle of the next step, sqrt(a_i a_(i+1)), and drifts positions to a_(i+1) with them; at the
- * end of the list velocities are kicked to its last entry. A list of N entries costs N forces. On the way velocities are half a step behind positions:
- * `epoch` says where both are.
+ * end of the list velocities are kicked to its last entry. A list of N entries costs N forces. On the way velocities are half a step behind
+ * positions: `epoch` says where both are.
  *
- * Positions, velocities and epoch are the whole state. Save them in the observer, and a later call with them and the same list gives the same bits as a
- * run that never stopped. Outputs up to the middle of the step at hand are then taken as written.
+ * Positions, velocities and epoch are the whole state. Save them in the observer, and a later call with them and the same list gives the same bits
+ * as a run that never stopped. Outputs up to the middle of the step at hand are then taken as written.
  *
- * Outputs at any time: with the force of the nearest step, positions drift from it to the output and velocities are kicked, in arrays of their own; no
- * force is computed. They meet the steps exactly, with an error of second order between them.
+ * Outputs at any time: with the force of the nearest step, positions drift from it to the output and velocities are kicked, in arrays of their own;
+ * no force is computed. They meet the steps exactly, with an error of second order between them.
  *
- * At two cells a particle or more (B >= 2) keep the four-point gradient and leave law.window at 0: a lattice of particles has images of its modes there,
- * which an exact gradient lets grow (10% in P(k)) and sharpening amplifies. At one cell a particle FIXPAIR_WINDOW_PCS with law.window the same moves the
- * largest modes to 1e-5. Equal steps of a suit late times better than equal steps of ln a. With B = 2, CIC and 20 steps from z = 32, P(k) of
- * particles 2 Mpc/h apart is within 3% of HMcode's for k < 0.25 h/Mpc.
+ * At two cells a particle or more (B >= 2) keep the four-point gradient and leave law.window at 0: a lattice of particles has images of its modes
+ * there, which an exact gradient lets grow (10% in P(k)) and sharpening amplifies. At one cell a particle FIXPAIR_WINDOW_PCS with law.window the
+ * same moves the largest modes to 1e-5. Equal steps of a suit late times better than equal steps of ln a. With B = 2, CIC and 20 steps from z = 32,
+ * P(k) of particles 2 Mpc/h apart is within 3% of HMcode's for k < 0.25 h/Mpc.
  *
- * The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its transform,
- * fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
+ * The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its
+ * transform, fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
  *
  * In/Out: position  wrapped into [0, L)
  *      velocity  peculiar, a dx/dt, as fixpair_initial_conditions_f64 makes them
@@ -2311,9 +2322,9 @@ fixpair_status_t fixpair_evolve_scratch_f32(struct fixpair_layout *scratch,
  *      observer  told of each step and output, and can stop the run; or NULL
  *      exec      or NULL
  * Returns: 0; FIXPAIR_ERROR_STOPPED if the observer asked for it: go on with the same list whenever you like; FIXPAIR_ERROR_NULL (also for COLA
- *          without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE (also for a list that does not increase, an epoch or output outside
- *          it, and no particles), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were, unless
- *          NOT_FINITE comes from a velocity or displacement, or from particles that move beyond all numbers. After that and after
+ *          without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE (also for a list that does not increase, an epoch or output
+ *          outside it, and no particles), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were,
+ *          unless NOT_FINITE comes from a velocity or displacement, or from particles that move beyond all numbers. After that and after
  *          FIXPAIR_ERROR_HOOK they are undefined
  * Cost: a step is four transforms, a deposit, a kick and a drift; memory beyond the particles: three meshes
  */
@@ -2653,13 +2664,15 @@ fixpair_status_t fixpair_halos_finish(struct fixpair_halo *halos,
  * Delta, a halo's density over the mean density of matter: `times` (MEAN), times/Om(a) (CRITICAL), or Delta_c/Om(a) (VIRIAL), with x = Om(a) - 1,
  * Delta_c = 18 pi^2 + 82 x - 39 x^2 in a flat universe with dark energy, 18 pi^2 + 60 x - 32 x^2 in an open one without.
  *
+ * The virial one falls from 337 today (Om = 0.3) to 178 in matter domination: before z = 1.1 virial masses exceed those of 200 times the mean.
+ *
  * Out: delta
  * In:  definition  FIXPAIR_OVERDENSITY_MEAN, _CRITICAL or _VIRIAL
  *      times       200, say; not read with FIXPAIR_OVERDENSITY_VIRIAL
  *      cosmology
  *      a           scale factor
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _CHOICE, _VERSION; FIXPAIR_ERROR_RANGE for a or `times` not positive, for the virial
- *          one in a curved universe with dark energy (|1 - Om - Ode - Or| > 1e-3), or for the cosmology
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _CHOICE, _VERSION; FIXPAIR_ERROR_RANGE for a or `times` not positive, for the
+ *          virial one in a curved universe with dark energy (|1 - Om - Ode - Or| > 1e-3), or for the cosmology
  */
 fixpair_status_t fixpair_overdensity(double *delta,
                                      int32_t definition,
@@ -2682,8 +2695,8 @@ fixpair_status_t fixpair_spheres_scratch_f32(struct fixpair_layout *scratch, siz
 /*
  * Spherical overdensity masses: grows spheres about given centres until their mean density has fallen to Delta times that of matter.
  *
- * R and M = k m are the solution of R = R_k = (3 k L^3/(4 pi Delta N))^(1/3) with k particles within R_k (inclusive) that has the smallest k not below
- * n_min: going outwards from where n_min particles would do, the first radius at which the density has fallen to Delta. So
+ * R and M = k m are the solution of R = R_k = (3 k L^3/(4 pi Delta N))^(1/3) with k particles within R_k (inclusive) that has the smallest k not
+ * below n_min: going outwards from where n_min particles would do, the first radius at which the density has fallen to Delta. So
  * M = (4 pi/3) R^3 Delta rho_m holds exactly. Members, mass and radius are 0 if fewer than n_min particles lie within R_n_min: not that dense.
  *
  * Out: spheres            for each centre, each overdensity; spheres_len = centres_len x overdensities_len
@@ -2696,8 +2709,8 @@ fixpair_status_t fixpair_spheres_scratch_f32(struct fixpair_layout *scratch, siz
  *      n_min              1 or more
  *      scratch            scratch_len bytes, see fixpair_spheres_scratch_f64
  *      exec               or NULL
- * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH; FIXPAIR_ERROR_HOOK, after which spheres are
- *          undefined
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH; FIXPAIR_ERROR_HOOK, after which spheres
+ *          are undefined
  * Cost: a sort of the particles, 60 ns each on one core, then a few counts of those in each sphere
  */
 fixpair_status_t fixpair_spheres_f64(struct fixpair_sphere *spheres,
@@ -2737,8 +2750,9 @@ fixpair_status_t fixpair_spheres_f32(struct fixpair_sphere *spheres,
  * Each centre moves to the centre of mass of the particles within its radius, then the radius shrinks by a factor, until a sphere would hold
  * fewer than n_min particles.
  *
- * In/out: centres   centres_len of them, 3 numbers each; any finite numbers; on return in [0, L). One whose first sphere holds fewer than n_min particles stays
- * In:  radii        centres_len radii of first spheres, from 0 to L/4; about twice the radius of a fixpair_halo
+ * In/out: centres   centres_len of them, 3 numbers each; any finite numbers; on return in [0, L). One whose first sphere holds fewer than n_min
+ *                   particles stays
+ * In:  radii        centres_len radii of first spheres, 0 or more, taken as L/4 if larger; about twice the radius of a fixpair_halo
  *      position     all particles that may lie in the spheres
  *      box_size     L
  *      factor       0.975 in the source; from 0.5 to 0.99

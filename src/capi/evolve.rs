@@ -5,65 +5,24 @@ use core::ffi::c_void;
 use super::border::Border;
 use super::cosmology::fixpair_cosmology;
 use super::exec::{HostExec, fixpair_exec};
-use super::factors::{FIXPAIR_COLA_EXPONENT, FIXPAIR_STEPPER_FASTPM, stepper};
+use super::factors::{FIXPAIR_COLA_EXPONENT, FIXPAIR_STEPPER_FASTPM};
 use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
 use super::force::{FIXPAIR_DIFFERENCE_FOUR_POINT, fixpair_force_law};
-use super::particles::{Triple, components, components_of, fixpair_components_f32, fixpair_components_f64};
-use super::pm::{FIXPAIR_WINDOW_CIC, Places, fixpair_positions_f32, fixpair_positions_f64, positions_of};
+use super::particles::{components, fixpair_components_f32, fixpair_components_f64};
+use super::pm::FIXPAIR_WINDOW_CIC;
+use super::run::{
+    Structs, fixpair_displacements_f32, fixpair_displacements_f64, fixpair_gravity, fixpair_observer,
+    fixpair_outputs_f32, fixpair_outputs_f64, lagrangian, shown, told,
+};
 use super::status::{code, fixpair_status_t};
 use crate::cosmology::Cosmology;
-use crate::pm::evolve::{self, Displacements, Epoch, Gravity, Workshop};
-use crate::pm::kick::Lpt;
-use crate::pm::outputs::{Event, Outputs, Progress, Verdict};
-use crate::real::Real;
+use crate::pm::evolve::{self, Epoch, Workshop};
 use crate::scratch::Layout;
-use crate::status::{Error, Result};
+use crate::status::Result;
 
-/// Positions have reached the next scale factor of the list.
-pub const FIXPAIR_EVENT_STEP: i32 = 0;
-/// An output is in its arrays.
-pub const FIXPAIR_EVENT_OUTPUT: i32 = 1;
-
-/// What moves the particles of a run. fixpair_gravity_init fills one.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct fixpair_gravity {
-    /// sizeof(fixpair_gravity).
-    pub struct_size: usize,
-    /// Background.
-    pub cosmology: fixpair_cosmology,
-    /// Side of the box, in the unit of positions.
-    pub box_size: f64,
-    /// H0 in the unit of velocities over that of positions: 100 for km/s and Mpc/h, 0.1 for km/s and kpc/h.
-    pub hubble: f64,
-    /// From density to force.
-    pub law: fixpair_force_law,
-    /// n of FIXPAIR_STEPPER_COLA; not read by others.
-    pub cola_exponent: f64,
-    /// FIXPAIR_STEPPER_FASTPM, _LEAPFROG or _COLA.
-    pub stepper: i32,
-    /// FIXPAIR_WINDOW_NGP, _CIC, _TSC or _PCS, for the deposit of masses and the read-out of forces.
-    pub window: i32,
-}
-
-impl fixpair_gravity {
-    fn check(&self) -> Result<Gravity> {
-        if self.struct_size != size_of::<Self>() {
-            return Err(Error::Version);
-        }
-        Ok(Gravity {
-            cosmology: self.cosmology.check()?,
-            box_size: self.box_size,
-            hubble: self.hubble,
-            window: self.window.try_into()?,
-            law: self.law.check()?,
-            stepper: stepper(self.stepper, self.cola_exponent)?,
-        })
-    }
-}
-
-/// Fills the gravity: the GOLIAT cosmology, a box of 1000 Mpc/h, km/s, FastPM, cloud in cell, and the force law of fixpair_force_law_init but for a gradient of
-/// four points, which does not see the lattice of the particles: FastPM's own choice.
+/// Fills the gravity: the GOLIAT cosmology, km/s and Mpc/h, FastPM, cloud in cell, and the force law of fixpair_force_law_init but for a gradient of
+/// four points, which does not see the lattice of the particles: FastPM's own choice. box_size is 0, which runs refuse: set it, and the cosmology
+/// that the initial conditions have.
 ///
 /// Out: gravity
 /// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT
@@ -77,7 +36,7 @@ pub unsafe extern "C" fn fixpair_gravity_init(gravity: *mut fixpair_gravity) -> 
         *unsafe { Border::new().write_one(gravity) }? = fixpair_gravity {
             struct_size: size_of::<fixpair_gravity>(),
             cosmology: fixpair_cosmology::new(Cosmology::goliat()),
-            box_size: 1000.0,
+            box_size: 0.0,
             hubble: 100.0,
             law: fixpair_force_law {
                 gradient: FIXPAIR_DIFFERENCE_FOUR_POINT,
@@ -90,130 +49,6 @@ pub unsafe extern "C" fn fixpair_gravity_init(gravity: *mut fixpair_gravity) -> 
         Ok(())
     })())
 }
-
-/// What a run has just done.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct fixpair_progress {
-    /// FIXPAIR_EVENT_STEP or FIXPAIR_EVENT_OUTPUT.
-    pub event: i32,
-    /// Entry of the list of scale factors that positions have reached.
-    pub step: usize,
-    /// The last entry of the list.
-    pub steps: usize,
-    /// The output that was written; after a step, the one that comes next.
-    pub output: usize,
-    /// Where the particles are: those of the run after a step, those of the output arrays after an output.
-    pub epoch: Epoch,
-}
-
-/// Who is told of progress. It may read the particles of the run and of the output arrays, and save them, but not change them.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct fixpair_observer {
-    /// Handed to observe as it is.
-    pub context: *mut c_void,
-    /// Returns 0 to go on; anything else ends the run after the step at hand with FIXPAIR_ERROR_STOPPED.
-    pub observe: Option<unsafe extern "C" fn(context: *mut c_void, progress: *const fixpair_progress) -> i32>,
-}
-
-/// Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA needs. From
-/// modes: fixpair_displace_f64 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct fixpair_displacements_f64 {
-    /// First order, one a particle.
-    pub first: fixpair_positions_f64,
-    /// Second order, one a particle; of length 0 for none.
-    pub second: fixpair_positions_f64,
-    /// When.
-    pub scale_factor: f64,
-}
-
-/// Where particles go at times between the steps of a run: each output overwrites the last.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct fixpair_outputs_f64 {
-    /// When: increasing, inside the list of steps.
-    pub scale_factors: *const f64,
-    /// How many.
-    pub length: usize,
-    /// One a particle.
-    pub position: fixpair_components_f64,
-    /// Peculiar, one a particle.
-    pub velocity: fixpair_components_f64,
-}
-
-/// Displacements of the particles in Lagrangian perturbation theory, x = q + first + second, when the scale factor was `scale_factor`: what COLA needs. From
-/// modes: fixpair_displace_f32 writes the first order as its velocity for c1 = 1, c2 = 0, the second for c1 = 0, c2 = 1.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct fixpair_displacements_f32 {
-    /// First order, one a particle.
-    pub first: fixpair_positions_f32,
-    /// Second order, one a particle; of length 0 for none.
-    pub second: fixpair_positions_f32,
-    /// When.
-    pub scale_factor: f64,
-}
-
-/// Where particles go at times between the steps of a run: each output overwrites the last.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct fixpair_outputs_f32 {
-    /// When: increasing, inside the list of steps.
-    pub scale_factors: *const f64,
-    /// How many.
-    pub length: usize,
-    /// One a particle.
-    pub position: fixpair_components_f32,
-    /// Peculiar, one a particle.
-    pub velocity: fixpair_components_f32,
-}
-
-/// The structs of one precision, as one.
-trait Structs: Hook {
-    type Triple: Triple<Real = Self::Real>;
-    type Places: Places<Real = Self::Real>;
-    type Outputs: Copy;
-    type Displacements: Copy;
-
-    fn outputs(of: &Self::Outputs) -> (*const f64, usize, [Self::Triple; 2]);
-    fn displacements(of: &Self::Displacements) -> ([Self::Places; 2], f64);
-}
-
-macro_rules! structs {
-    ($hook:ty, $triple:ty, $places:ty, $outputs:ty, $displacements:ty) => {
-        impl Structs for $hook {
-            type Triple = $triple;
-            type Places = $places;
-            type Outputs = $outputs;
-            type Displacements = $displacements;
-
-            fn outputs(of: &$outputs) -> (*const f64, usize, [$triple; 2]) {
-                (of.scale_factors, of.length, [of.position, of.velocity])
-            }
-
-            fn displacements(of: &$displacements) -> ([$places; 2], f64) {
-                ([of.first, of.second], of.scale_factor)
-            }
-        }
-    };
-}
-structs!(
-    fixpair_fft_f64,
-    fixpair_components_f64,
-    fixpair_positions_f64,
-    fixpair_outputs_f64,
-    fixpair_displacements_f64
-);
-structs!(
-    fixpair_fft_f32,
-    fixpair_components_f32,
-    fixpair_positions_f32,
-    fixpair_outputs_f32,
-    fixpair_displacements_f32
-);
 
 /// Scratch of fixpair_evolve_f64: the largest of those of the deposit, the kick and the forces, at most 75 MB however many particles.
 ///
@@ -262,22 +97,22 @@ unsafe fn query<H: Hook>(scratch: *mut Layout, fft: *const H, particles: usize, 
 /// Moves particles of one mass under their gravity, by the particle-mesh method, through a list of scale factors: from initial conditions to today.
 ///
 /// Step i has the force at a_i, kicks velocities to the middle of the next step, sqrt(a_i a_(i+1)), and drifts positions to a_(i+1) with them; at the
-/// end of the list velocities are kicked to its last entry. A list of N entries costs N forces. On the way velocities are half a step behind positions:
-/// `epoch` says where both are.
+/// end of the list velocities are kicked to its last entry. A list of N entries costs N forces. On the way velocities are half a step behind
+/// positions: `epoch` says where both are.
 ///
-/// Positions, velocities and epoch are the whole state. Save them in the observer, and a later call with them and the same list gives the same bits as a
-/// run that never stopped. Outputs up to the middle of the step at hand are then taken as written.
+/// Positions, velocities and epoch are the whole state. Save them in the observer, and a later call with them and the same list gives the same bits
+/// as a run that never stopped. Outputs up to the middle of the step at hand are then taken as written.
 ///
-/// Outputs at any time: with the force of the nearest step, positions drift from it to the output and velocities are kicked, in arrays of their own; no
-/// force is computed. They meet the steps exactly, with an error of second order between them.
+/// Outputs at any time: with the force of the nearest step, positions drift from it to the output and velocities are kicked, in arrays of their own;
+/// no force is computed. They meet the steps exactly, with an error of second order between them.
 ///
-/// At two cells a particle or more (B >= 2) keep the four-point gradient and leave law.window at 0: a lattice of particles has images of its modes there,
-/// which an exact gradient lets grow (10% in P(k)) and sharpening amplifies. At one cell a particle FIXPAIR_WINDOW_PCS with law.window the same moves the
-/// largest modes to 1e-5. Equal steps of a suit late times better than equal steps of ln a. With B = 2, CIC and 20 steps from z = 32, P(k) of
-/// particles 2 Mpc/h apart is within 3% of HMcode's for k < 0.25 h/Mpc.
+/// At two cells a particle or more (B >= 2) keep the four-point gradient and leave law.window at 0: a lattice of particles has images of its modes
+/// there, which an exact gradient lets grow (10% in P(k)) and sharpening amplifies. At one cell a particle FIXPAIR_WINDOW_PCS with law.window the
+/// same moves the largest modes to 1e-5. Equal steps of a suit late times better than equal steps of ln a. With B = 2, CIC and 20 steps from z = 32,
+/// P(k) of particles 2 Mpc/h apart is within 3% of HMcode's for k < 0.25 h/Mpc.
 ///
-/// The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its transform,
-/// fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
+/// The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its
+/// transform, fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
 ///
 /// In/Out: position  wrapped into [0, L)
 ///      velocity  peculiar, a dx/dt, as fixpair_initial_conditions_f64 makes them
@@ -292,9 +127,9 @@ unsafe fn query<H: Hook>(scratch: *mut Layout, fft: *const H, particles: usize, 
 ///      observer  told of each step and output, and can stop the run; or NULL
 ///      exec      or NULL
 /// Returns: 0; FIXPAIR_ERROR_STOPPED if the observer asked for it: go on with the same list whenever you like; FIXPAIR_ERROR_NULL (also for COLA
-///          without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE (also for a list that does not increase, an epoch or output outside
-///          it, and no particles), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were, unless
-///          NOT_FINITE comes from a velocity or displacement, or from particles that move beyond all numbers. After that and after
+///          without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE (also for a list that does not increase, an epoch or output
+///          outside it, and no particles), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were,
+///          unless NOT_FINITE comes from a velocity or displacement, or from particles that move beyond all numbers. After that and after
 ///          FIXPAIR_ERROR_HOOK they are undefined
 /// Cost: a step is four transforms, a deposit, a kick and a drift; memory beyond the particles: three meshes
 ///
@@ -423,61 +258,4 @@ unsafe fn run<S: Structs>(
             &mut tell,
         )
     }
-}
-
-unsafe fn lagrangian<'a, S: Structs>(
-    border: &mut Border,
-    pointer: *const S::Displacements,
-) -> Result<Option<Displacements<'a, S::Real>>> {
-    if pointer.is_null() {
-        return Ok(None);
-    }
-    // SAFETY: the caller's promise.
-    unsafe {
-        let ([first, second], scale_factor) = S::displacements(border.read_one(pointer)?);
-        let first = positions_of(border, &first)?;
-        let second = if second.parts().2 == 0 { None } else { Some(positions_of(border, &second)?) };
-        Ok(Some(Displacements { lpt: Lpt { first, second }, scale_factor }))
-    }
-}
-
-unsafe fn shown<'a, S: Structs>(
-    border: &mut Border,
-    pointer: *const S::Outputs,
-) -> Result<Option<Outputs<'a, S::Real>>> {
-    if pointer.is_null() {
-        return Ok(None);
-    }
-    // SAFETY: the caller's promise.
-    unsafe {
-        let (scale_factors, length, [position, velocity]) = S::outputs(border.read_one(pointer)?);
-        let scale_factors = border.read(scale_factors, length)?;
-        let position = components_of(border, &position)?;
-        let velocity = components_of(border, &velocity)?;
-        Ok(Some(Outputs { scale_factors, position, velocity }))
-    }
-}
-
-/// The host's observer as a function; without one, all is well.
-unsafe fn told<T: Real>(
-    border: &mut Border,
-    pointer: *const fixpair_observer,
-) -> Result<impl FnMut(&Progress<'_, T>) -> Verdict + use<T>> {
-    let mut observer = None;
-    if !pointer.is_null() {
-        // SAFETY: the caller's promise.
-        let fixpair_observer { context, observe } = *unsafe { border.read_one(pointer) }?;
-        observer = Some((context, observe.ok_or(Error::Null)?));
-    }
-    Ok(move |progress: &Progress<'_, T>| {
-        let Some((context, observe)) = observer else { return Verdict::Continue };
-        let Progress { event, step, steps, output, epoch, .. } = *progress;
-        let event = match event {
-            Event::Step => FIXPAIR_EVENT_STEP,
-            Event::Output => FIXPAIR_EVENT_OUTPUT,
-        };
-        let report = fixpair_progress { event, step, steps, output, epoch };
-        // SAFETY: the host's function, with its own context; the report lives until it returns.
-        if unsafe { observe(context, &raw const report) } == 0 { Verdict::Continue } else { Verdict::Stop }
-    })
 }

@@ -29,15 +29,15 @@ pub(super) fn stepper(choice: i32, cola_exponent: f64) -> Result<Stepper> {
 
 /// The factors of a drift, for any integrator: x += factor v + first psi1 + second psi2.
 ///
-/// Canonical velocity v = a^2 dx/dt/H0 in the unit of x: v = a u/H0 for the peculiar velocity u (H0 = 100 km/s per Mpc/h). At its time `at`, usually between
-/// `from` and `to`, it is known; E = H/H0, D the growth factor, G = a^2 E f D:
+/// Canonical velocity v = a^2 dx/dt/H0 in the unit of x: v = a u/H0 for the peculiar velocity u (H0 = 100 km/s per Mpc/h). At its time `at`, usually
+/// between `from` and `to`, it is known; E = H/H0, D the growth factor, G = a^2 E f D:
 ///
 ///   FastPM    factor = [D(to) - D(from)]/G(at)
 ///   leapfrog  factor = int da/(a^3 E)
 ///   COLA      factor = int (a/at)^n da/(a^3 E), for v - v_LPT; first = D(to) - D(from) - factor G(at), second the same of D2
 ///
-/// psi1 and psi2 are the displacements of both orders over D and over D2, so psi1 = x - q today in linear theory; first and second are 0 but for COLA.
-/// v is the full velocity.
+/// psi1 and psi2 are the displacements of both orders over D and over D2, so psi1 = x - q today in linear theory; first and second are 0 but for
+/// COLA. v is the full velocity.
 ///
 /// Out: factors
 /// In:  cosmology

@@ -40,10 +40,10 @@ pub const FIXPAIR_DIFFERENCE_FOUR_POINT: i32 = 2;
 /// A Tree-PM host adds 1/r^2 [erfc(r/2 r_s) + r/(r_s sqrt pi) exp(-r^2/4 r_s^2)] of Newton's force for near pairs (Springel 2005,
 /// astro-ph/0505010, eq. 19-21).
 ///
-/// Error of a pair's force between 3 and 3.5 cells, r.m.s. over places and directions (less beyond): with FOUR_POINT gradients CIC 5%, TSC and PCS 2.2%, 1.3% if
-/// the Laplacian is FOUR_POINT too; 1.8% for PCS with EXACT, FOUR_POINT, (PCS, 1), 0.53 L/n. An EXACT gradient rings along the axes unless a split smooths
-/// it, and more so with a window divided out. Tree and mesh with a split of 1.25 L/n: 1.2% (CIC), 0.4% (TSC, PCS), 0.03% with PCS and EXACT; 5 to 9% too
-/// weak if the window is not divided out.
+/// Error of a pair's force between 3 and 3.5 cells, r.m.s. over places and directions (less beyond): with FOUR_POINT gradients CIC 5%, TSC and PCS
+/// 2.2%, 1.3% if the Laplacian is FOUR_POINT too; 1.8% for PCS with EXACT, FOUR_POINT, (PCS, 1), 0.53 L/n. An EXACT gradient rings along the axes
+/// unless a split smooths it, and more so with a window divided out. Tree and mesh with a split of 1.25 L/n: 1.2% (CIC), 0.4% (TSC, PCS), 0.03% with
+/// PCS and EXACT; 5 to 9% too weak if the window is not divided out.
 ///
 /// Fill it with fixpair_force_law_init, then change what is to be otherwise. Functions refuse with FIXPAIR_ERROR_VERSION, _CHOICE and
 /// _NOT_FINITE what these say, and with FIXPAIR_ERROR_RANGE a power that is not 1 to 4 or a negative split scale.
@@ -129,10 +129,10 @@ pub unsafe extern "C" fn fixpair_force_scratch(scratch: *mut Layout, n: usize) -
 
 /// From modes of the density to modes of F = -grad inverse-Laplacian delta, all three components in one pass.
 ///
-/// F is in the unit of L: for a linear field the Zel'dovich displacement x - q itself. The peculiar acceleration is 3/2 Omega_m H0^2/a^2 times F where F is in
-/// comoving lengths. A particle of weight w pulls another with w/mass L^3/(4 pi r^2). Read out with the window of the deposit, the force of any law
-/// conserves momentum to rounding, and no particle pulls itself. k = 0 and the Nyquist modes (|n_a| = n/2 on any axis: an odd derivative has no value
-/// there) become zero. A whole force, beside the density two meshes:
+/// F is in the unit of L: for a linear field the Zel'dovich displacement x - q itself. The peculiar acceleration is 3/2 Omega_m H0^2/a^2 times F
+/// where F is in comoving lengths. A particle of weight w pulls another with w/mass L^3/(4 pi r^2). Read out with the window of the deposit, the
+/// force of any law conserves momentum to rounding, and no particle pulls itself. k = 0 and the Nyquist modes (|n_a| = n/2 on any axis: an odd
+/// derivative has no value there) become zero. A whole force, beside the density two meshes:
 ///
 ///    memset(x, 0, len * sizeof *x);
 ///    fixpair_deposit_f64(x, len, &cells, ...);
@@ -141,7 +141,8 @@ pub unsafe extern "C" fn fixpair_force_scratch(scratch: *mut Layout, n: usize) -
 ///    fft.inverse(fft.context, x);                        and y, z
 ///    fixpair_read_out_f64(force_x, 3, x, len, &cells, ...);    and y, z, with the same window
 ///
-/// In/Out: x     len reals on the brick: F_k, the forward transform of deposited weights, not normalised; then the modes of F_x, whose inverse transform,
+/// In/Out: x     len reals on the brick: F_k, the forward transform of deposited weights, not normalised; then the modes of F_x, whose inverse
+///         transform,
 ///               not normalised, is the force on the cells
 /// Out: y, z     len reals each: the modes of F_y and F_z
 /// In:  brick    of Fourier space
@@ -298,7 +299,8 @@ unsafe fn one<T: Real>(
 
 /// The inverse Laplacian of delta: phi_k = -S/(W^power K2) delta_k, in the unit of L^2; the peculiar potential is 3/2 Omega_m H0^2/a times it.
 ///
-/// For hosts that take differences in real space, which gives them the force of the law with that gradient, and for energies. The law's own gradient means nothing here.
+/// For hosts that take differences in real space, which gives them the force of the law with that gradient, and for energies. The law's own gradient
+/// means nothing here.
 ///
 /// In/Out: modes  len reals on the brick: F_k as for fixpair_forces_f64, then phi_k
 /// In:  brick, law, box_size, mass, scratch, scratch_len, exec  as fixpair_forces_f64

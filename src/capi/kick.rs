@@ -71,9 +71,10 @@ pub unsafe extern "C" fn fixpair_kick_scratch_f32(
 
 /// Kicks particles: u_i <- keep u_i + force F(x_i) + first psi1_i + second psi2_i, F(x_i) = sum_c W(x_c - x_i) F_c as fixpair_read_out_f64 has it.
 ///
-/// Peculiar velocities go from a0 to a1 with f of fixpair_kick_factors and H0 (100 for km/s and Mpc/h): keep = a0/a1, force = f.factor H0/a1, and for COLA
-/// first = f.first H0/(a1 D), second = f.second H0/(a1 D2), D and D2 (fixpair_growth_factors) of the time at which psi1 and psi2 are the displacements of
-/// both orders. Sums over the four terms are in double precision and rounded once; the result is the same, bit for bit, on any number of threads.
+/// Peculiar velocities go from a0 to a1 with f of fixpair_kick_factors and H0 (100 for km/s and Mpc/h): keep = a0/a1, force = f.factor H0/a1, and
+/// for COLA first = f.first H0/(a1 D), second = f.second H0/(a1 D2), D and D2 (fixpair_growth_factors) of the time at which psi1 and psi2 are the
+/// displacements of both orders. Sums over the four terms are in double precision and rounded once; the result is the same, bit for bit, on any
+/// number of threads.
 ///
 /// In/Out: velocity  u; may share an array of structs with the positions
 /// In:  position
@@ -222,9 +223,9 @@ unsafe fn kick_particles<C: Triple, P: Places<Real = C::Real>>(
 
 /// Moves particles: x_i <- x_i + factor u_i + first psi1_i + second psi2_i, wrapped into [0, L).
 ///
-/// With f of fixpair_drift_factors, and peculiar velocities of the time `at`: factor = f.factor at/H0, and for COLA first = f.first/D, second = f.second/D2, D,
-/// D2, psi1 and psi2 as for fixpair_kick_f64. Sums are in double precision and rounded once; no position becomes L itself. The result is the same, bit
-/// for bit, on any number of threads.
+/// With f of fixpair_drift_factors, and peculiar velocities of the time `at`: factor = f.factor at/H0, and for COLA first = f.first/D, second =
+/// f.second/D2, D, D2, psi1 and psi2 as for fixpair_kick_f64. Sums are in double precision and rounded once; no position becomes L itself. The
+/// result is the same, bit for bit, on any number of threads.
 ///
 /// In/Out: position  any finite numbers before; may share an array of structs with the velocities
 /// In:  velocity  u

@@ -30,6 +30,7 @@ pub mod noise;
 pub mod particles;
 pub mod pm;
 pub mod power;
+pub mod run;
 pub mod spheres;
 pub mod stages;
 pub mod status;

@@ -22,13 +22,15 @@ pub const FIXPAIR_OVERDENSITY_VIRIAL: i32 = 2;
 /// Delta, a halo's density over the mean density of matter: `times` (MEAN), times/Om(a) (CRITICAL), or Delta_c/Om(a) (VIRIAL), with x = Om(a) - 1,
 /// Delta_c = 18 pi^2 + 82 x - 39 x^2 in a flat universe with dark energy, 18 pi^2 + 60 x - 32 x^2 in an open one without.
 ///
+/// The virial one falls from 337 today (Om = 0.3) to 178 in matter domination: before z = 1.1 virial masses exceed those of 200 times the mean.
+///
 /// Out: delta
 /// In:  definition  FIXPAIR_OVERDENSITY_MEAN, _CRITICAL or _VIRIAL
 ///      times       200, say; not read with FIXPAIR_OVERDENSITY_VIRIAL
 ///      cosmology
 ///      a           scale factor
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _CHOICE, _VERSION; FIXPAIR_ERROR_RANGE for a or `times` not positive, for the virial
-///          one in a curved universe with dark energy (|1 - Om - Ode - Or| > 1e-3), or for the cosmology
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _CHOICE, _VERSION; FIXPAIR_ERROR_RANGE for a or `times` not positive, for the
+///          virial one in a curved universe with dark energy (|1 - Om - Ode - Or| > 1e-3), or for the cosmology
 ///
 /// # Safety
 /// Pointers are null or point to one value.
@@ -87,8 +89,8 @@ pub unsafe extern "C" fn fixpair_spheres_scratch_f32(
 
 /// Spherical overdensity masses: grows spheres about given centres until their mean density has fallen to Delta times that of matter.
 ///
-/// R and M = k m are the solution of R = R_k = (3 k L^3/(4 pi Delta N))^(1/3) with k particles within R_k (inclusive) that has the smallest k not below
-/// n_min: going outwards from where n_min particles would do, the first radius at which the density has fallen to Delta. So
+/// R and M = k m are the solution of R = R_k = (3 k L^3/(4 pi Delta N))^(1/3) with k particles within R_k (inclusive) that has the smallest k not
+/// below n_min: going outwards from where n_min particles would do, the first radius at which the density has fallen to Delta. So
 /// M = (4 pi/3) R^3 Delta rho_m holds exactly. Members, mass and radius are 0 if fewer than n_min particles lie within R_n_min: not that dense.
 ///
 /// Out: spheres            for each centre, each overdensity; spheres_len = centres_len x overdensities_len
@@ -101,8 +103,8 @@ pub unsafe extern "C" fn fixpair_spheres_scratch_f32(
 ///      n_min              1 or more
 ///      scratch            scratch_len bytes, see fixpair_spheres_scratch_f64
 ///      exec               or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH; FIXPAIR_ERROR_HOOK, after which spheres are
-///          undefined
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH; FIXPAIR_ERROR_HOOK, after which spheres
+///          are undefined
 /// Cost: a sort of the particles, 60 ns each on one core, then a few counts of those in each sphere
 ///
 /// # Safety
@@ -214,8 +216,9 @@ unsafe fn grow<P: Places>(
 /// Each centre moves to the centre of mass of the particles within its radius, then the radius shrinks by a factor, until a sphere would hold
 /// fewer than n_min particles.
 ///
-/// In/out: centres   centres_len of them, 3 numbers each; any finite numbers; on return in [0, L). One whose first sphere holds fewer than n_min particles stays
-/// In:  radii        centres_len radii of first spheres, from 0 to L/4; about twice the radius of a fixpair_halo
+/// In/out: centres   centres_len of them, 3 numbers each; any finite numbers; on return in [0, L). One whose first sphere holds fewer than n_min
+///                   particles stays
+/// In:  radii        centres_len radii of first spheres, 0 or more, taken as L/4 if larger; about twice the radius of a fixpair_halo
 ///      position     all particles that may lie in the spheres
 ///      box_size     L
 ///      factor       0.975 in the source; from 0.5 to 0.99

@@ -24,12 +24,12 @@ const SMALLEST: f64 = 1e-9;
 
 /// Moves each centre to the densest place within its radius.
 ///
-/// `centres`: any finite places; on return in [0, L). `radii`: of the first spheres, one a centre, not above L/4: twice the
+/// `centres`: any finite places; on return in [0, L). `radii`: of the first spheres, one a centre, taken as L/4 if larger: twice the
 /// [`radius`](field@super::Halo::radius) of the group, say. A centre whose first sphere holds fewer than `n_min` particles stays. `position`: all
 /// particles that may lie in the spheres. `scratch`: see [`spheres_scratch`](super::spheres_scratch).
 ///
 /// # Errors
-/// `Length`; `NotFinite`; `Range` for the box, a radius not in 0 ..= L/4, a factor not in 0.5 ..= 0.999, `n_min` = 0; `Overflow`, `Scratch`,
+/// `Length`; `NotFinite`; `Range` for the box, a negative radius, a factor not in 0.5 ..= 0.99, `n_min` = 0; `Overflow`, `Scratch`,
 /// `Alignment`; `Hook`, after which some centres are moved.
 ///
 /// The same bits for any number of threads. Cost: a sort of the particles, then log(radius ratio)/log(factor) sums over those of each sphere.
@@ -48,7 +48,8 @@ pub fn refine_centres<T: Real>(
     }
     let sensible = (0.5..=0.99).contains(&factor)
         && n_min > 0
-        && radii.iter().all(|radius| (0.0..=0.25 * box_size).contains(radius));
+        && box_size > 0.0
+        && radii.iter().all(|&radius| radius >= 0.0);
     if !sensible {
         return Err(Error::Range);
     }
@@ -61,7 +62,7 @@ pub fn refine_centres<T: Real>(
         // SAFETY: one centre a chunk, and as many radii as centres.
         let centre = unsafe { &mut centres.part(i, 1)[0] };
         let mut place = centre.map(|x| home(x, box_size));
-        let mut radius = radii[i];
+        let mut radius = radii[i].min(0.25 * box_size);
         loop {
             let (count, sum) = centre_of_mass(&grid, place, radius, box_size);
             if count < n_min {

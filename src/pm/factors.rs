@@ -7,8 +7,8 @@
 //! dx/da = v/(a^3 E),    dv/da = (3/2) Om F/(a^2 E).
 //! ```
 //!
-//! A drift from a0 to a1 adds d v to positions, v being known at `at`; a kick adds k F to velocities, F being known at `at`. `at` is usually between a0
-//! and a1 and may be either of them.
+//! A drift from a0 to a1 adds d v to positions, v being known at `at`; a kick adds k F to velocities, F being known at `at`. `at` is usually between
+//! a0 and a1 and may be either of them.
 //!
 //! ```text
 //!            drift d                                       kick k
@@ -19,8 +19,8 @@
 //!
 //! D is the growth factor and G = a^3 E dD/da = a^2 E f D the canonical velocity of a growing mode of unit displacement. The growth equation is
 //! dG/da = (3/2) Om D/(a^2 E), so FastPM's kick is Feng et al.'s (2016, arXiv:1603.00476) -(3/2) Om [G(a1) - G(a0)]/G'(at)/(at^2 E(at)) of
-//! grad inverse-Laplacian delta: with F = D(at) psi it moves a growing mode exactly, in steps of any length. COLA (Tassev, Zaldarriaga & Eisenstein 2013,
-//! arXiv:1301.0322; n is their n_LPT) keeps second-order Lagrangian theory exact and integrates what is left, which moves as int a^n dt.
+//! grad inverse-Laplacian delta: with F = D(at) psi it moves a growing mode exactly, in steps of any length. COLA (Tassev, Zaldarriaga & Eisenstein
+//! 2013, arXiv:1301.0322; n is their n_LPT) keeps second-order Lagrangian theory exact and integrates what is left, which moves as int a^n dt.
 //!
 //! All three are exact in the limit of short steps and agree there to second order.
 
@@ -50,8 +50,8 @@ pub enum Stepper {
     },
 }
 
-/// What a drift or a kick adds: factor times velocity or force, and first psi1 + second psi2, with psi1 and psi2 the displacements of both orders over their
-/// growth, D and D2.
+/// What a drift or a kick adds: factor times velocity or force, and first psi1 + second psi2, with psi1 and psi2 the displacements of both orders
+/// over their growth, D and D2.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct StepFactors {
@@ -102,8 +102,8 @@ impl Stepper {
 
     /// Adds factor F + first psi1/D + second psi2/D2 to canonical velocities, for a force known at `at`.
     ///
-    /// COLA kicks by F - F_LPT, F_LPT = D psi1 + (D2 - D^2) psi2, and adds what the velocities of Lagrangian theory change: first = G(a1) - G(a0) - k D(at),
-    /// second = G2(a1) - G2(a0) - k (D2 - D^2)(at).
+    /// COLA kicks by F - F_LPT, F_LPT = D psi1 + (D2 - D^2) psi2, and adds what the velocities of Lagrangian theory change: first = G(a1) - G(a0) -
+    /// k D(at), second = G2(a1) - G2(a0) - k (D2 - D^2)(at).
     ///
     /// # Errors
     /// As [`Stepper::drift`].

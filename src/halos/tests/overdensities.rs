@@ -184,7 +184,8 @@ fn what_is_wrong_is_refused() {
         grown(&[[f64::NAN; 3]], &[[0.5; 3]], &[200.0], &density(1, 1), &Serial),
         Err(Error::NotFinite)
     );
-    assert_eq!(refined(&places, &[[0.5; 3]], 0.26, &Serial), Err(Error::Range));
+    assert_eq!(refined(&places, &[[0.5; 3]], -0.1, &Serial), Err(Error::Range));
+    assert_eq!(refined(&places, &[[0.4; 3]], 9.0, &Serial), refined(&places, &[[0.4; 3]], 0.25, &Serial));
     assert_eq!(refined(&places, &[[0.5; 3]], f64::NAN, &Serial), Err(Error::NotFinite));
     assert_eq!(grown(&places, &[], &[], &good, &Serial), Ok(vec![]));
 }

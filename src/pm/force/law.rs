@@ -15,9 +15,9 @@ use crate::status::{Error, Result};
 /// | `TwoPoint` | sin(theta)/H | (2/H)^2 sin^2(theta/2) | O(H^2) |
 /// | `FourPoint` | (8 sin theta - sin 2 theta)/(6 H) | (15 - 16 cos theta + cos 2 theta)/(6 H^2) | O(H^4) |
 ///
-/// They are the transforms of the centred stencils (Hockney & Eastwood 1988): f' = [f(+1) - f(-1)]/(2 H) and [8 (f(+1) - f(-1)) - (f(+2) - f(-2))]/(12 H);
-/// f'' = [f(+1) - 2 f(0) + f(-1)]/H^2, summed over the axes the 7-point Laplacian, and [16 (f(+1) + f(-1)) - (f(+2) + f(-2)) - 30 f(0)]/(12 H^2),
-/// the 13-point one.
+/// They are the transforms of the centred stencils (Hockney & Eastwood 1988): f' = [f(+1) - f(-1)]/(2 H) and [8 (f(+1) - f(-1)) - (f(+2) -
+/// f(-2))]/(12 H); f'' = [f(+1) - 2 f(0) + f(-1)]/H^2, summed over the axes the 7-point Laplacian, and [16 (f(+1) + f(-1)) - (f(+2) + f(-2)) - 30
+/// f(0)]/(12 H^2), the 13-point one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Difference {
@@ -71,8 +71,8 @@ const HIGHEST_POWER: u32 = 4;
 ///
 ///     phi_k = - S(k) / (W(k)^power K2(k)) delta_k,     F_k = - i K_a(k) phi_k,     S(k) = exp(-k^2 r_s^2)
 ///
-/// K2 is minus the Laplacian, i K_a the gradient. The default is exact in both, with no window and no split; for runs with more than one cell a particle
-/// [`ForceLaw::FOUR_POINT`] is the better one.
+/// K2 is minus the Laplacian, i K_a the gradient. The default is exact in both, with no window and no split; for runs with more than one cell a
+/// particle [`ForceLaw::FOUR_POINT`] is the better one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ForceLaw {
     /// K2.
@@ -86,8 +86,8 @@ pub struct ForceLaw {
 }
 
 impl ForceLaw {
-    /// Exact Laplacian and four-point gradient: FastPM's own choice (its kernel 1_4). The gradient vanishes at the Nyquist wavenumber of the mesh, where
-    /// with two cells a particle the lattice of the particles has its first images; an exact one lets them grow, which adds 10% to P(k) at
+    /// Exact Laplacian and four-point gradient: FastPM's own choice (its kernel 1_4). The gradient vanishes at the Nyquist wavenumber of the mesh,
+    /// where with two cells a particle the lattice of the particles has its first images; an exact one lets them grow, which adds 10% to P(k) at
     /// half the particles' Nyquist wavenumber by z = 0.
     pub const FOUR_POINT: Self = Self {
         laplacian: Difference::Exact,

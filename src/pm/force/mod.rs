@@ -2,9 +2,9 @@
 //!
 //!     F = -grad inverse-Laplacian delta,     in Fourier space F_k = + i k/k^2 delta_k,
 //!
-//! (physics.md, 7; Hockney & Eastwood 1988), in the unit of the box side L: for a linear field it is the Zel'dovich displacement x - q itself, and div F = -delta.
-//! The peculiar potential is 3/2 Omega_m H0^2/a times [`potential`]. [`ForceLaw`] says how derivatives are taken, what is divided out and what is left to
-//! a short-range solver. The laws of known codes, with the window that they deposit with:
+//! (Hockney & Eastwood 1988), in the unit of the box side L: for a linear field it is the Zel'dovich displacement x - q itself, and
+//! div F = -delta. The peculiar potential is 3/2 Omega_m H0^2/a times [`potential`]. [`ForceLaw`] says how derivatives are taken, what is divided
+//! out and what is left to a short-range solver. The laws of known codes, with the window that they deposit with:
 //!
 //! | code | `laplacian` | `gradient` | `window` | `split_scale` |
 //! |---|---|---|---|---|
@@ -15,22 +15,25 @@
 //! | real-space PM: 7-point Laplacian, centred differences | `TwoPoint` | `TwoPoint` | none | 0 |
 //! | Gadget-2's Tree-PM, its mesh part | `Exact` | `FourPoint` | (CIC, 2) | 1.25 L/n |
 //!
-//! A Tree-PM host adds the short-range force of Springel 2005, astro-ph/0505010, eq. 19-21: its potential is that of a point times erfc(r/2 r_s), so that a pair feels
+//! A Tree-PM host adds the short-range force of Springel 2005, astro-ph/0505010, eq. 19-21: its potential is that of a point times erfc(r/2 r_s), so
+//! that a pair feels
 //!     1/r^2 [erfc(r/2 r_s) + r/(r_s sqrt pi) exp(-r^2/4 r_s^2)]
 //! of Newton's force directly and the rest from the mesh.
 //!
-//! Of total weight M, a particle of weight w pulls with w/M L^3/(4 pi r^2). Any of these forces, read out with the window of the deposit, is antisymmetric in the two
-//! particles: no self-force, and momentum is conserved to rounding.
+//! Of total weight M, a particle of weight w pulls with w/M L^3/(4 pi r^2). Any of these forces, read out with the window of the deposit, is
+//! antisymmetric in the two particles: no self-force, and momentum is conserved to rounding.
 //!
-//! How near that is to Newton's force in the periodic box, for pairs 3 to 16 cells apart on a mesh of 64^3 (tested): averaged over places and directions, within 1.2% for
-//! CIC, TSC and PCS with any gradient but an exact one. R.m.s. of single pairs, as they lie to the mesh, at its largest (3 to 3.5 cells): with `FourPoint` gradients 5% for CIC, 2.2% for
-//! TSC and PCS, 1.3% if the Laplacian is `FourPoint` too; 1.8% for PCS with `Exact`, `FourPoint`, (PCS, 1), 0.53 L/n, where no pair beyond 3.5 cells is off by more than 2.1%. What ends
-//! at the edge of the mesh's modes without being small there rings along the axes: exact gradients do, and the more so where the window is divided out
-//! without a split (CIC, exact: 13%; sharpened: above 100%). With the split 1.25 L/n and `FourPoint` gradients, tree and mesh together are right to 1.2% (CIC), 0.37% (TSC) and 0.35%
-//! (PCS) r.m.s. at any separation, and to 0.03% with PCS and exact gradients; without division by the window 5 to 9% too weak.
+//! How near that is to Newton's force in the periodic box, for pairs 3 to 16 cells apart on a mesh of 64^3 (tested): averaged over places and
+//! directions, within 1.2% for CIC, TSC and PCS with any gradient but an exact one. R.m.s. of single pairs, as they lie to the mesh, at its largest
+//! (3 to 3.5 cells): with `FourPoint` gradients 5% for CIC, 2.2% for TSC and PCS, 1.3% if the Laplacian is `FourPoint` too; 1.8% for PCS with
+//! `Exact`, `FourPoint`, (PCS, 1), 0.53 L/n, where no pair beyond 3.5 cells is off by more than 2.1%. What ends at the edge of the mesh's modes
+//! without being small there rings along the axes: exact gradients do, and the more so where the window is divided out without a split (CIC, exact:
+//! 13%; sharpened: above 100%). With the split 1.25 L/n and `FourPoint` gradients, tree and mesh together are right to 1.2% (CIC), 0.37% (TSC) and
+//! 0.35% (PCS) r.m.s. at any separation, and to 0.03% with PCS and exact gradients; without division by the window 5 to 9% too weak.
 //!
-//! Zero modes: k = 0, for the mean density pulls nowhere; and the Nyquist modes, |n_a| = n/2 on any axis. They stand for two wave vectors at once, which ask for opposite
-//! forces, so that an odd derivative has no value there; dropping them from all components and the potential leaves one potential for all three.
+//! Zero modes: k = 0, for the mean density pulls nowhere; and the Nyquist modes, |n_a| = n/2 on any axis. They stand for two wave vectors at once,
+//! which ask for opposite forces, so that an odd derivative has no value there; dropping them from all components and the potential leaves one
+//! potential for all three.
 
 use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
@@ -55,15 +58,17 @@ pub fn force_scratch(n: usize) -> Result<Layout> {
 
 /// All three components in one pass: three forces with two meshes beyond the density's.
 ///
-/// `meshes`: on `brick`, of Fourier space and any layout; the first holds on entry F_k, the un-normalised forward transform of deposited weights. On exit mesh a holds the modes of
-/// component a, such that the un-normalised inverse transform gives the force on the cells. `box_size`: L, the unit of the force.
-/// `mass`: the sum of all weights, of all processes: delta_k = F_k/mass.
+/// `meshes`: on `brick`, of Fourier space and any layout; the first holds on entry F_k, the un-normalised forward transform of deposited weights. On
+/// exit mesh a holds the modes of component a, such that the un-normalised inverse transform gives the force on the cells. `box_size`: L, the unit
+/// of the force. `mass`: the sum of all weights, of all processes: delta_k = F_k/mass.
 ///
 /// # Errors
-/// `Brick` for a brick of configuration space, `Length` for short arrays; `NotFinite` for the box, the mass or the split scale; `Range` if the box or the mass is not positive,
-/// the split scale negative, the power not 1 to 4, or L/(n mass) no normal number; `Scratch`, `Alignment`, `Hook`. The modes themselves are not checked.
+/// `Brick` for a brick of configuration space, `Length` for short arrays; `NotFinite` for the box, the mass or the split scale; `Range` if the box
+/// or the mass is not positive, the split scale negative, the power not 1 to 4, or L/(n mass) no normal number; `Scratch`, `Alignment`, `Hook`. The
+/// modes themselves are not checked.
 ///
-/// The same bits on any threads and bricks; `f32` modes are the rounded results of `f64` arithmetic. Cost: one pass, which reads one mesh and writes three.
+/// The same bits on any threads and bricks; `f32` modes are the rounded results of `f64` arithmetic. Cost: one pass, which reads one mesh and writes
+/// three.
 pub fn forces<T: Real>(
     meshes: [&mut [T]; 3],
     brick: &Brick,
@@ -149,9 +154,11 @@ pub(super) fn force_with<T: Real>(
     })
 }
 
-/// The inverse Laplacian of delta, in place: phi_k = -S/(W^power K2) delta_k, in the unit of L^2. For hosts that take differences in real space, and for energies.
+/// The inverse Laplacian of delta, in place: phi_k = -S/(W^power K2) delta_k, in the unit of L^2. For hosts that take differences in real space, and
+/// for energies.
 ///
-/// `modes`: on `brick`, F_k as for [`forces`]; the law's gradient does not matter. Real-space differences of it are the forces of the law with that gradient.
+/// `modes`: on `brick`, F_k as for [`forces`]; the law's gradient does not matter. Real-space differences of it are the forces of the law with that
+/// gradient.
 ///
 /// # Errors
 /// As [`forces`], with L^2/(n^2 mass) a normal number too.
