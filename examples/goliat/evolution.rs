@@ -62,14 +62,12 @@ impl Voyage {
     ) -> Result<(), Failure> {
         let list = scale_factors(plan.steps)?;
         let exec = universe.exec;
-        // On finer meshes undone windows would amplify the lattice of the particles: see the library's `evolve`.
-        let window = (plan.mesh_factor == 1).then_some((WINDOW, 2));
         let gravity = Gravity {
             cosmology: Cosmology::goliat(),
             box_size: universe.length,
             hubble: 100.0,
             window: WINDOW,
-            law: ForceLaw { window, ..ForceLaw::default() },
+            law: ForceLaw::FOUR_POINT,
             stepper: Stepper::FastPm,
         };
         with_transform(universe.size * plan.mesh_factor, exec, |fft| {

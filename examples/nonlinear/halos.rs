@@ -77,7 +77,9 @@ fn masses(snapshot: &Snapshot<'_>, groups: &[Halo], exec: &dyn Exec) -> Result<V
 /// Members of the spheres whose centre is in no larger sphere: by cells of the largest diameter, so that only neighbours meet.
 fn distinct(spheres: &[Sphere], centres: &[[f64; 3]], box_size: f64) -> Vec<u64> {
     let reach = spheres.iter().map(|sphere| sphere.radius).fold(0.0, f64::max);
-    let side = ((box_size / reach.max(1e-3 * box_size)) as usize).max(1);
+    // No more cells than spheres: memory is theirs.
+    let most = (spheres.len() as f64).cbrt() as usize;
+    let side = ((box_size / reach) as usize).min(most).max(1);
     let cell = |centre: &[f64; 3]| centre.map(|x| ((x / box_size * side as f64) as usize).min(side - 1));
     let index = |[x, y, z]: [usize; 3]| (x * side + y) * side + z;
     let mut cells = vec![Vec::new(); side.pow(3)];

@@ -8,11 +8,9 @@
 use std::f64::consts::PI;
 
 use fixpair::cosmology::{Cosmology, Linear};
+use fixpair::halos::overdensity::CRITICAL_DENSITY;
 
 use crate::Failure;
-
-/// Critical density today, h^2 Msun/Mpc^3.
-const CRITICAL_DENSITY: f64 = 2.775_366_27e11;
 
 /// Which halos.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -108,8 +108,8 @@ unsafe fn query<H: Hook>(scratch: *mut Layout, fft: *const H, particles: usize, 
 ///
 /// At two cells a particle or more (B >= 2) keep the four-point gradient and leave law.window at 0: a lattice of particles has images of its modes
 /// there, which an exact gradient lets grow (10% in P(k)) and sharpening amplifies. At one cell a particle FIXPAIR_WINDOW_PCS with law.window the
-/// same moves the largest modes to 1e-5. Equal steps of a suit late times better than equal steps of ln a. With B = 2, CIC and 20 steps from z = 32,
-/// P(k) of particles 2 Mpc/h apart is within 3% of HMcode's for k < 0.25 h/Mpc.
+/// same gets the power of the largest modes right to 1e-4. Equal steps of a suit late times better than equal steps of ln a. With B = 2, CIC and 20 steps from z = 32,
+/// P(k) of particles 2 Mpc/h apart is within 4% of HMcode's for k < 0.25 h/Mpc.
 ///
 /// The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its
 /// transform, fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
@@ -128,7 +128,7 @@ unsafe fn query<H: Hook>(scratch: *mut Layout, fft: *const H, particles: usize, 
 ///      exec      or NULL
 /// Returns: 0; FIXPAIR_ERROR_STOPPED if the observer asked for it: go on with the same list whenever you like; FIXPAIR_ERROR_NULL (also for COLA
 ///          without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE (also for a list that does not increase, an epoch or output
-///          outside it, and no particles), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were,
+///          outside it, and no particles), _CHOICE, _VERSION, _SCRATCH, _CONVERGENCE, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were,
 ///          unless NOT_FINITE comes from a velocity or displacement, or from particles that move beyond all numbers. After that and after
 ///          FIXPAIR_ERROR_HOOK they are undefined
 /// Cost: a step is four transforms, a deposit, a kick and a drift; memory beyond the particles: three meshes

@@ -85,7 +85,7 @@ pub struct fixpair_progress {
 pub struct fixpair_observer {
     /// Handed to observe as it is.
     pub context: *mut c_void,
-    /// Returns 0 to go on; anything else ends the run after the step at hand with FIXPAIR_ERROR_STOPPED.
+    /// Returns 0 to go on; anything else ends the run after the step at hand with FIXPAIR_ERROR_STOPPED, unless there is none after it.
     pub observe: Option<unsafe extern "C" fn(context: *mut c_void, progress: *const fixpair_progress) -> i32>,
 }
 

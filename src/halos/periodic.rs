@@ -74,7 +74,7 @@ pub(super) fn difference(a: f64, b: f64, box_size: f64) -> f64 {
     }
 }
 
-/// Calls `body` with consecutive pieces of `length` particles: first and count.
+/// Piece number i of `total` particles in pieces of `length`.
 pub(super) fn pieces(total: usize, length: usize, i: usize) -> core::ops::Range<usize> {
     let first = i * length;
     first..total.min(first + length)

@@ -60,10 +60,14 @@ impl<'a> Sets<'a> {
         }
     }
 
-    /// Points a number straight to its root.
+    /// Points a number straight to its root, for good: once nothing is joined any more, threads may flatten different numbers at the same time.
     #[inline]
     pub(super) fn flatten(&self, i: u32) {
-        let root = self.root(i);
+        // The way is only read: shortening it would write numbers that another thread has flattened, or is about to.
+        let mut root = i;
+        while self.parent(root) != root {
+            root = self.parent(root);
+        }
         self.parent[i as usize].store(root, Ordering::Relaxed);
     }
 }

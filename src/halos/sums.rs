@@ -97,6 +97,20 @@ impl HaloSums {
         self.members += other.members;
     }
 
+    /// Everything, so that only equals are interchangeable.
+    fn key(&self) -> (u64, u64, [[u64; 3]; 7]) {
+        let all = [
+            self.reference,
+            self.reference_velocity,
+            self.position,
+            self.velocity,
+            self.low,
+            self.high,
+            [self.position_squared, self.velocity_squared, 0.0],
+        ];
+        (self.label, self.members, all.map(|triple| triple.map(f64::to_bits)))
+    }
+
     /// Finite, of one particle or more, with its reference in the box?
     pub(super) fn is_sound(&self, box_size: f64) -> bool {
         let triples = [
@@ -176,15 +190,14 @@ pub fn halo_sums<T: Real>(
 /// Adds up sums of the same label, from all processes: the first entries become one for each group, in order of their label. Returns how many.
 ///
 /// # Errors
-/// `NotFinite` for a number in `sums`; `Range` for the box, for a reference outside it, or for no members. Nothing is then changed.
+/// `NotFinite` for a number in `sums`; `Range` for the box, for a reference outside it, or for no members; `Overflow` for 2^64 members and more. Nothing
+/// is then changed.
 ///
 /// The same bits whatever the order of the sums; other than those of [`halos`](super::halos) of the whole by rounding.
 pub fn halo_sums_merge(sums: &mut [HaloSums], box_size: f64) -> Result<usize> {
     check_sums(sums, box_size)?;
-    let bits = |x: [f64; 3]| x.map(f64::to_bits);
-    sums.sort_unstable_by_key(|a| {
-        (a.label, a.members, bits(a.reference), bits(a.position), bits(a.velocity))
-    });
+    sums.iter().try_fold(0_u64, |total, one| total.checked_add(one.members)).ok_or(Error::Overflow)?;
+    sums.sort_unstable_by_key(HaloSums::key);
     let mut groups = 0;
     for i in 0..sums.len() {
         let one = sums[i];

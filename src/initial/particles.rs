@@ -281,8 +281,9 @@ pub(crate) fn wrap(x: f64, box_size: f64) -> f64 {
     if libm::fabs(x) > FARTHEST * box_size {
         return f64::NAN;
     }
-    let wrapped = x - box_size * libm::floor(x / box_size);
-    // A tiny negative x rounds up to the edge itself.
+    // The remainder is exact; a tiny negative one rounds up to the edge itself.
+    let rest = libm::fmod(x, box_size);
+    let wrapped = if rest < 0.0 { rest + box_size } else { rest };
     if wrapped >= box_size { 0.0 } else { wrapped }
 }
 

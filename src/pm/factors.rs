@@ -118,7 +118,9 @@ impl Stepper {
                 Ok(StepFactors::plain(1.5 * cosmology.omega_m * integral(rate, from, to)?))
             }
             Self::Cola { exponent: n } => {
-                let time = (libm::pow(to / at, n) - libm::pow(from / at, n)) * at / n;
+                // a^n - 1, which does not cancel where n is small.
+                let beyond = |a: f64| libm::expm1(n * libm::log(a / at));
+                let time = (beyond(to) - beyond(from)) * at / n;
                 let expansion = libm::sqrt(cosmology.e_squared(at));
                 let factor = 1.5 * cosmology.omega_m * time / (at * at * expansion);
                 let first = end.velocity - start.velocity - factor * known.d;

@@ -4,7 +4,7 @@ use super::columns::Positions;
 use super::deposit::deposit;
 use super::drift::drift;
 use super::evolve::{Displacements, Epoch, Gravity, Workshop};
-use super::factors::{Stepper, Units};
+use super::factors::{Stepper, Units, half_step};
 use super::force::forces;
 use super::frame::Assignment;
 use super::kick::{Lpt, kick};
@@ -59,6 +59,33 @@ impl<'a, 'b, T: Real> Mover<'a, 'b, T> {
         let region = whole(workshop.fft)?;
         let assignment = Assignment { box_size: gravity.box_size, window: gravity.window, shift: 0.0 };
         Ok(Self { gravity, units, region, assignment, lpt })
+    }
+
+    /// Works out what all steps of a list need, so that nothing is refused when half of them are done.
+    pub(super) fn try_steps(&self, list: &[f64], velocity: f64) -> Result<()> {
+        let Gravity { stepper, cosmology, box_size, .. } = self.gravity;
+        let edge = T::from_f64(*box_size);
+        if !box_size.is_finite() {
+            return Err(Error::NotFinite);
+        }
+        if !(edge > T::ZERO && edge.is_finite()) {
+            return Err(Error::Range);
+        }
+        let mut from = velocity;
+        for (i, &a) in list.iter().enumerate() {
+            let next = list.get(i + 1).copied();
+            let to = next.map_or(a, |next| half_step(a, next));
+            let kick = self.units.kick(stepper.kick(cosmology, from, to, a)?, from, to);
+            let drift = stepper.drift(cosmology, a, next.unwrap_or(a), to)?;
+            let drift = self.units.drift(drift, to);
+            let all =
+                [kick.keep, kick.force, kick.first, kick.second, drift.velocity, drift.first, drift.second];
+            if all.iter().any(|factor| !factor.is_finite()) {
+                return Err(Error::NotFinite);
+            }
+            from = to;
+        }
+        Ok(())
     }
 
     /// The force of particles at `at` into the meshes.

@@ -57,7 +57,6 @@ pub enum Verdict {
 pub(super) struct Queue<'a, 'b, T> {
     outputs: Option<&'a mut Outputs<'b, T>>,
     next: usize,
-    written: usize,
     observe: &'a mut dyn FnMut(&Progress<'_, T>) -> Verdict,
     /// The step that positions have reached, and the last.
     pub(super) steps: [usize; 2],
@@ -90,7 +89,7 @@ impl<'a, 'b, T: Real> Queue<'a, 'b, T> {
                 |&a: &f64| a < epoch.velocity || a == epoch.velocity && epoch.velocity < epoch.position;
             next = times.iter().take_while(|a| done(a)).count();
         }
-        Ok(Self { outputs, next, written: 0, observe, steps: [0; 2], verdict: Verdict::Continue })
+        Ok(Self { outputs, next, observe, steps: [0; 2], verdict: Verdict::Continue })
     }
 
     /// Writes the outputs up to a time, with the force at hand.
@@ -111,7 +110,6 @@ impl<'a, 'b, T: Real> Queue<'a, 'b, T> {
             mover.drift(&mut outputs.position, &u, epoch, a, workshop)?;
             mover.kick(&mut outputs.velocity, &x, epoch, a, workshop)?;
             self.next += 1;
-            self.written += 1;
             let progress = Progress {
                 event: Event::Output,
                 step: self.steps[0],

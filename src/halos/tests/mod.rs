@@ -3,6 +3,7 @@
 mod catalogues;
 mod groups;
 mod overdensities;
+mod sets;
 mod slabs;
 
 use std::vec;

@@ -23,7 +23,7 @@
 //! Of total weight M, a particle of weight w pulls with w/M L^3/(4 pi r^2). Any of these forces, read out with the window of the deposit, is
 //! antisymmetric in the two particles: no self-force, and momentum is conserved to rounding.
 //!
-//! How near that is to Newton's force in the periodic box, for pairs 3 to 16 cells apart on a mesh of 64^3 (tested): averaged over places and
+//! How near that is to Newton's force in the periodic box, for pairs 3 to 16 cells apart on a mesh of 64^3 (measured; tests hold the averages to 2%): averaged over places and
 //! directions, within 1.2% for CIC, TSC and PCS with any gradient but an exact one. R.m.s. of single pairs, as they lie to the mesh, at its largest
 //! (3 to 3.5 cells): with `FourPoint` gradients 5% for CIC, 2.2% for TSC and PCS, 1.3% if the Laplacian is `FourPoint` too; 1.8% for PCS with
 //! `Exact`, `FourPoint`, (PCS, 1), 0.53 L/n, where no pair beyond 3.5 cells is off by more than 2.1%. What ends at the edge of the mesh's modes

@@ -117,6 +117,17 @@ fn factors_of_any_stepper_add_up_and_turn_round() {
 }
 
 #[test]
+fn cola_has_the_limit_of_a_logarithm_for_small_exponents() {
+    let cosmology = Cosmology::goliat();
+    let kick = |exponent| Stepper::Cola { exponent }.kick(&cosmology, 0.3, 0.5, 0.4).unwrap().factor;
+    let expansion = cosmology.expansion(0.4).unwrap();
+    let wanted = 1.5 * cosmology.omega_m * 0.4 * (0.5_f64 / 0.3).ln() / (0.16 * expansion);
+    for exponent in [1e-9, -1e-12, 1e-15, 1e-300] {
+        close(kick(exponent), wanted, 1e-8);
+    }
+}
+
+#[test]
 fn lists_of_steps_begin_and_end_exactly() {
     let (mut linear, mut logarithmic) = (vec![0.0; 8], vec![0.0; 8]);
     linear_steps(&mut linear, 1.0 / 33.0, 1.0).unwrap();
