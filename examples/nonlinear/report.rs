@@ -123,6 +123,9 @@ pub(crate) fn text(arguments: &Arguments, results: &Results, claims: &[Claim]) -
         }
     }
     text.push_str("\nClaims\n");
+    if claims.is_empty() {
+        text.push_str("  none: no shell below k = 0.25 h/Mpc, and no bin of 100 particles and more with 100 halos expected\n");
+    }
     for claim in claims {
         let _ = writeln!(text, "  [{}] {}", if claim.holds { "x" } else { " " }, claim.text);
     }

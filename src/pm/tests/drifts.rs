@@ -59,6 +59,18 @@ fn drift_wraps_exactly() {
 }
 
 #[test]
+fn places_an_ulp_from_an_edge_are_brought_home() {
+    let length = 1_077.188_352_077_819_7;
+    for boxes in -20..20 {
+        let edge = f64::from(boxes) * length;
+        for x in [edge.next_down(), edge, edge.next_up()] {
+            let out = moved(&[x; 3], &[0.0; 3], length, 1.0).unwrap();
+            assert!(out.iter().all(|x| (0.0..length).contains(x)), "{x}: {out:?}");
+        }
+    }
+}
+
+#[test]
 fn drift_never_ends_on_the_far_edge() {
     // 0.1 and 1/3 round up and down in f32.
     for length in [0.1, 1.0 / 3.0, 1.0, 256.0, 1000.0, 0.7] {
