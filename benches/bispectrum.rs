@@ -5,8 +5,6 @@
 //! measured here: what code whose bits must be the same everywhere can reach. FIXPAIR_BENCH_PYTHON=<python with pySpectrum>
 //! runs the peer on the same mesh and shells.
 
-use std::time::Instant;
-
 use fixpair::estimate::bispectrum::{
     Triangle, bispectrum, bispectrum_meshes, bispectrum_scratch, bispectrum_sums, bispectrum_sums_scratch,
     closed_triangle_count, closed_triangles, shell_modes, triangle_counts, triangle_counts_scratch,
@@ -19,27 +17,14 @@ use fixpair::noise::{Realisation, white_modes};
 
 #[path = "../examples/common/memory.rs"]
 mod memory;
+#[path = "common/seconds.rs"]
+mod seconds;
 
 use memory::Memory;
+use seconds::seconds;
 
 /// Width of a shell in k_f.
 const WIDTH: f64 = 3.0;
-
-/// Seconds that this thread has spent on a processor, where the system tells: others use this machine too.
-fn now() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
-}
-
-fn seconds(run: impl FnOnce()) -> f64 {
-    let (start, before) = (Instant::now(), now());
-    run();
-    match (before, now()) {
-        (Some(before), Some(after)) => after - before,
-        _ => start.elapsed().as_secs_f64(),
-    }
-}
 
 fn median(mut times: Vec<f64>) -> f64 {
     times.sort_by(f64::total_cmp);

@@ -5,8 +5,6 @@
 //! that each must move once, and how long this machine takes to move as many by copying. At 256^3 in both precisions and at 128^3 with two cells a
 //! particle on a side. FIXPAIR_BENCH_SMALL=1: 64^3, to try it.
 
-use std::time::Instant;
-
 use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Wiggles};
 use fixpair::exec::Serial;
 use fixpair::fft::{Fft3, Tables, Transform, recommended_padding};
@@ -28,30 +26,17 @@ use fixpair::real::Real;
 
 #[path = "../examples/common/memory.rs"]
 mod memory;
+#[path = "common/seconds.rs"]
+mod seconds;
 
 use memory::Memory;
+use seconds::seconds;
 
 /// Steps of a run.
 const STEPS: usize = 10;
 
 /// A stage is repeated until it has taken this long.
 const ENOUGH: f64 = 0.2;
-
-/// Seconds that this thread has spent on a processor, where the system tells: others use this machine too.
-fn now() -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
-    let nanoseconds: f64 = text.split(' ').next()?.parse().ok()?;
-    Some(1e-9 * nanoseconds)
-}
-
-fn seconds(run: impl FnOnce()) -> f64 {
-    let (start, before) = (Instant::now(), now());
-    run();
-    match (before, now()) {
-        (Some(before), Some(after)) => after - before,
-        _ => start.elapsed().as_secs_f64(),
-    }
-}
 
 /// Mean of as many runs as tell more than the clock's ticks, after one that warms up.
 fn mean(mut run: impl FnMut()) -> f64 {

@@ -24,7 +24,8 @@ use fixpair::real::Real;
 
 use crate::Failure;
 use crate::memory::Memory;
-use crate::universe::{Universe, bispectrum_sides, with_transform};
+use crate::transform::with_transform;
+use crate::universe::{Universe, bispectrum_sides};
 
 /// Edges in |n|^2 of the shells below 4 k_f, and where the first three, which hold k_f <= k < 2 k_f, end.
 const LONG: [u64; 6] = [1, 2, 3, 4, 5, 9];

@@ -19,7 +19,8 @@ use crate::Failure;
 use crate::measurement::Early;
 use crate::memory::Memory;
 use crate::store::{Content, Found, Part, Store};
-use crate::universe::{END, REDSHIFT, Universe, with_transform};
+use crate::transform::with_transform;
+use crate::universe::{END, REDSHIFT, Universe};
 
 const WINDOW: Window = Window::CloudInCell;
 

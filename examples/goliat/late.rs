@@ -16,7 +16,8 @@ use crate::bispectrum::{Those, Triangles};
 use crate::density::contrast;
 use crate::measurement::Late;
 use crate::memory::Memory;
-use crate::universe::{Universe, fine_side, with_transform};
+use crate::transform::with_transform;
+use crate::universe::{Universe, fine_side};
 
 /// Linking length in mean separations of particles.
 const LINKING: f64 = 0.2;

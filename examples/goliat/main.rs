@@ -32,6 +32,8 @@ mod statistics;
 mod store;
 mod suite;
 mod text;
+#[path = "../common/transform.rs"]
+mod transform;
 mod universe;
 
 use std::io::Write as _;

@@ -13,7 +13,8 @@ use crate::redshift_space::multipoles;
 use crate::start::Start;
 use crate::store::{Found, Part};
 use crate::suite::{Amplitude, Configuration, Phase, Variant};
-use crate::universe::{Universe, fine_side, with_transform};
+use crate::transform::with_transform;
+use crate::universe::{Universe, fine_side};
 
 /// What making a universe takes. Memory is taken and given back stage by stage.
 pub(crate) struct Bench<'a> {

@@ -66,7 +66,8 @@ mod tests {
 
     use super::*;
     use crate::start::Start;
-    use crate::universe::{fine_side, with_transform};
+    use crate::transform::with_transform;
+    use crate::universe::fine_side;
 
     #[test]
     fn kaiser_s_values_are_the_limit_of_many_modes() {

@@ -7,7 +7,8 @@ use fixpair::initial::realise::{Field, linear_density, second_order_particles, s
 use fixpair::noise::Realisation;
 
 use crate::Failure;
-use crate::universe::{Universe, fine_side, with_transform};
+use crate::transform::with_transform;
+use crate::universe::{Universe, fine_side};
 
 /// Density at z = 32, in modes.
 pub(crate) struct Start {

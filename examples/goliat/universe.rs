@@ -7,7 +7,7 @@ use fixpair::estimate::binning::{Bin, Binning, normalise, read_sums};
 use fixpair::estimate::compensation::Compensation;
 use fixpair::estimate::power::{power_sums, power_sums_scratch};
 use fixpair::exec::Exec;
-use fixpair::fft::{Tables, Transform, next_side};
+use fixpair::fft::next_side;
 use fixpair::initial::conditions::{InitialConditions, Order};
 use fixpair::initial::modes::scale_by_table;
 use fixpair::initial::png::Local;
@@ -166,19 +166,6 @@ pub(crate) fn fine_side(size: usize) -> Result<usize, Failure> {
 pub(crate) fn bispectrum_sides(size: usize) -> Result<[usize; 2], Failure> {
     let reach = REACH.min(size / 2);
     Ok([reach, fine_side(2 * reach)?])
-}
-
-/// Lends a transform of side n for the time of a call.
-pub(crate) fn with_transform<T: Real, R>(
-    n: usize,
-    exec: &dyn Exec,
-    body: impl FnOnce(&mut Transform<'_, T>) -> Result<R, Failure>,
-) -> Result<R, Failure> {
-    let mut tables = Memory::new(Tables::<T>::layout(n)?);
-    let tables = Tables::<T>::new(n, tables.bytes())?;
-    let mut workspace = Memory::new(Transform::<T>::workspace(n)?);
-    let cells = Brick::whole(n, Space::Configuration)?;
-    body(&mut Transform::new(&tables, cells, workspace.bytes(), exec)?)
 }
 
 #[cfg(test)]

@@ -37,6 +37,8 @@ mod spectrum;
 #[path = "../goliat/text.rs"]
 mod text;
 mod theory;
+#[path = "../common/transform.rs"]
+mod transform;
 
 use std::io::Write as _;
 use std::process::ExitCode;

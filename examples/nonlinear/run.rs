@@ -4,23 +4,22 @@
 
 use fixpair::cosmology::{Convention, Cosmology};
 use fixpair::exec::Exec;
-use fixpair::fft::{Fft3, Tables, Transform};
+use fixpair::fft::Fft3;
 use fixpair::initial::conditions::{
     InitialConditions, Order, initial_conditions, initial_conditions_scratch,
 };
 use fixpair::initial::particles::Components;
 use fixpair::initial::png::Local;
-use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{Amplitude, Phase, Realisation};
 use fixpair::pm::evolve::{Epoch, Gravity, Workshop, evolve, evolve_scratch};
 use fixpair::pm::factors::{Stepper, linear_steps};
 use fixpair::pm::outputs::{Event, Verdict};
-use fixpair::real::Real;
 
 use crate::Failure;
 use crate::arguments::Arguments;
 use crate::memory::Memory;
 use crate::theory::{REDSHIFTS, Theory};
+use crate::transform::with_transform;
 
 /// Redshift of the initial conditions.
 const START: f64 = 32.0;
@@ -132,19 +131,6 @@ fn start(
         let mut scratch = Memory::new(initial_conditions_scratch(conditions.order, fft, None)?);
         Ok(initial_conditions(position, velocity, &conditions, fft, None, scratch.bytes(), exec)?)
     })
-}
-
-/// Lends a transform of side n for the time of a call.
-fn with_transform<T: Real, R>(
-    n: usize,
-    exec: &dyn Exec,
-    body: impl FnOnce(&mut Transform<'_, T>) -> Result<R, Failure>,
-) -> Result<R, Failure> {
-    let mut tables = Memory::new(Tables::<T>::layout(n)?);
-    let tables = Tables::<T>::new(n, tables.bytes())?;
-    let mut workspace = Memory::new(Transform::<T>::workspace(n)?);
-    let cells = Brick::whole(n, Space::Configuration)?;
-    body(&mut Transform::new(&tables, cells, workspace.bytes(), exec)?)
 }
 
 #[cfg(test)]

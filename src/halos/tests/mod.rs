@@ -13,23 +13,9 @@ use super::*;
 use crate::exec::{Exec, Serial, Threads};
 use crate::pm::Positions;
 use crate::real::Real;
+use crate::reference::built::Memory;
 use crate::scratch::Layout;
 use crate::status::{Error, Result};
-
-/// Aligned memory for a layout.
-struct Memory(Vec<u8>, usize, usize);
-
-impl Memory {
-    fn new(layout: Layout) -> Self {
-        let bytes = vec![0xff; layout.size + layout.align];
-        let skip = bytes.as_ptr().align_offset(layout.align);
-        Self(bytes, skip, layout.size)
-    }
-
-    fn get(&mut self) -> &mut [u8] {
-        &mut self.0[self.1..self.1 + self.2]
-    }
-}
 
 /// Numbers in no order.
 struct Random(u64);

@@ -22,25 +22,10 @@ use crate::exec::{Exec, Serial, Threads};
 use crate::initial::particles::Components;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
+use crate::reference::built::Memory;
 use crate::reference::deposit::{spline, windows};
-use crate::scratch::Layout;
 use crate::simd::Simd;
 use crate::status::{Error, Result};
-
-/// Aligned memory for a layout.
-struct Memory(Vec<u8>, usize, usize);
-
-impl Memory {
-    fn new(layout: Layout) -> Self {
-        let bytes = vec![0xff; layout.size + layout.align];
-        let skip = bytes.as_ptr().align_offset(layout.align);
-        Self(bytes, skip, layout.size)
-    }
-
-    fn get(&mut self) -> &mut [u8] {
-        &mut self.0[self.1..self.1 + self.2]
-    }
-}
 
 fn region_of(n: usize) -> Region {
     Region::new(n, [0; 3], [n; 3], [n * n, n, 1]).unwrap()
