@@ -21,7 +21,7 @@ use super::kick::{Lpt, kick_scratch};
 use super::mover::{Mover, whole};
 use super::outputs::{Outputs, Progress, Queue, Verdict};
 use super::window::Window;
-use crate::cosmology::{Cosmology, Growth, growth_many};
+use crate::cosmology::Cosmology;
 use crate::exec::Exec;
 use crate::fft::Fft3;
 use crate::initial::particles::Components;
@@ -130,7 +130,6 @@ pub fn evolve<T: Real>(
     let first = start(scale_factors, *epoch)?;
     let last = scale_factors.len() - 1;
     let mover = Mover::new(gravity, displacements, [position.len(), velocity.len()], workshop)?;
-    growth_many(&gravity.cosmology, &[scale_factors[0], scale_factors[last]], &mut [Growth::default(); 2])?;
     let mut queue = Queue::new(outputs, scale_factors, *epoch, position.len(), observe)?;
     mover.try_steps(&scale_factors[first..], epoch.velocity)?;
     for step in first..=last {

@@ -134,6 +134,35 @@ fn outputs_come_once_and_alike_from_a_run_that_was_stopped() {
 }
 
 #[test]
+fn a_run_told_to_stop_at_an_output_ends_after_its_step() {
+    let first = start::<f64>(8, 1.0, Order::Second);
+    let list = logarithmic(4, START, 1.0);
+    let mut whole = first.clone();
+    serial(16).through(&gravity(Stepper::FastPm), &mut whole, &list);
+    // Just after the third entry, and in the last step's second half, behind which there is nothing left to stop.
+    for (time, stopped_at) in [(1.01 * list[2], Some(3)), (0.99, None)] {
+        let (mut x, mut u) = (first.x.clone(), first.u.clone());
+        let mut outputs = Outputs {
+            scale_factors: &[time],
+            position: Components::triples(&mut x).unwrap(),
+            velocity: Components::triples(&mut u).unwrap(),
+        };
+        let mut parts = first.clone();
+        let mut observe = |progress: &Progress<'_, f64>| {
+            if progress.event == Event::Output { Verdict::Stop } else { Verdict::Continue }
+        };
+        let fastpm = gravity(Stepper::FastPm);
+        let outcome = serial(16).run(&fastpm, &mut parts, None, &list, Some(&mut outputs), &mut observe);
+        assert_eq!(outcome, stopped_at.map_or(Ok(()), |_| Err(Error::Stopped)));
+        assert_eq!(parts.epoch.position, list[stopped_at.unwrap_or(4)]);
+        if stopped_at.is_some() {
+            serial(16).through(&fastpm, &mut parts, &list);
+        }
+        assert_eq!(parts, whole);
+    }
+}
+
+#[test]
 fn what_cannot_be_run_is_refused_before_particles_move() {
     let first = start::<f64>(8, 1.0, Order::Second);
     let good = logarithmic(3, START, 1.0);
