@@ -181,6 +181,8 @@ static void X(halos)(const fixpair_exec *exec) {
         check_named("fof_labels", "", SUFFIX, hash_bytes(hash, named, CROWD * sizeof *named));
         MUST(fixpair_halos_scratch(&layout, CROWD));
         scratch = take(layout.size);
+        MUST(fixpair_halo_count(&groups, named, CROWD, LEAST_MEMBERS, scratch, layout.size, exec));
+        check_named("halo_count", "", SUFFIX, hash_bytes(HASH_START, &groups, sizeof groups));
         hash = HASH_START;
         for (with = 0; with < 2; with++) {
             MUST(X(fixpair_halos)(halos, PLACES, &count, named, CROWD, &position, with ? &velocity : NULL, BOX,

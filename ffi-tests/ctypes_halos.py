@@ -39,9 +39,11 @@ def labels_of(twin, places, ids, length):
 
 
 def catalogue(twin, labels, places, speeds, mass=MASS):
-    count, found = len(labels.array), size_t()
-    halos, scratch = Buffer(Halo, count // LEAST), scratch_of(made(Layout, twin.library.halos_scratch, count))
-    twin.call("halos", halos.start, count // LEAST, found, labels.start, count, positions(places), speeds and positions(speeds),
+    count, needed, found = len(labels.array), size_t(), size_t()
+    scratch = scratch_of(made(Layout, twin.library.halos_scratch, count))
+    twin.library.halo_count(needed, labels.start, count, LEAST, scratch.start, scratch.size, twin.run)
+    halos = Buffer(Halo, needed.value)
+    twin.call("halos", halos.start, needed.value, found, labels.start, count, positions(places), speeds and positions(speeds),
               BOX, LEAST, mass, scratch.start, scratch.size, twin.run)
     return halos, found.value
 
@@ -68,6 +70,7 @@ def halos(twin):
     twin.case("fof_labels", sizes(twin.layout("fof_labels_scratch", PARTICLES)), labels, named)
     without, count = catalogue(twin, named, places, None)
     found, count = catalogue(twin, named, places, speeds)
+    twin.case("halo_count", filled(c_uint64, [count]))
     twin.case("halos", first(without, count), first(found, count))
     twin.case("halo_sums", first(*sums_of(twin, named, places, speeds, None, 0)))
     centres = array([x for halo in found.array[:count] for x in halo.centre])

@@ -92,7 +92,7 @@ SIGNATURES = {
     "force_law_init": "p", "force_scratch": "pn", "gravity_init": "p", "drift_factors": "ppidddd", "kick_factors": "ppidddd",
     "linear_steps": "pndd", "logarithmic_steps": "pndd", "linking_length": "pddu", "particle_mass": "pddu",
     "overdensity": "pidpd", "fof_merge": "pnppn", "fof_relabel": "pnpnp", "halos_scratch": "pn", "halo_sums_merge": "pnpd",
-    "halos_finish": "pnppndud",
+    "halo_count": "ppnupnp", "halos_finish": "pnppndud",
     "bispectrum_normalise": "ppnndd", "bispectrum_shot_noise": "ppnpnd", "bispectrum_reduced": "pppnpn",
 }
 TWINS = {

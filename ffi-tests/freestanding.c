@@ -175,6 +175,7 @@ static void evolve(const fixpair_fft_f32 *fft, const fixpair_components_f32 *x, 
     int stops = 0, axis;
     void *scratch;
     must(fixpair_gravity_init(&gravity), 31);
+    gravity.box_size = 1000.0;
     must(fixpair_logarithmic_steps(steps, STEPS, 1.0 / 33.0, 1.0), 32);
     must(fixpair_evolve_scratch_f32(&layout, fft, PARTICLES, gravity.window), 33);
     scratch = piece(layout);

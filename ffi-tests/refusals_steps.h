@@ -15,6 +15,7 @@ CALL(overdensity, (P(0), a->i[0], a->d[0], P(1), a->d[1]))
 CALL(fof_merge, (P(0), L(0), P(1), P(2), L(1)))
 CALL(fof_relabel, (P(0), L(0), P(1), L(1), P(2)))
 CALL(halos_scratch, (P(0), L(0)))
+CALL(halo_count, (P(0), P(1), L(0), a->u, P(2), L(1), P(3)))
 CALL(halo_sums_merge, (P(0), L(0), P(1), a->d[0]))
 CALL(halos_finish, (P(0), L(0), P(1), P(2), L(1), a->d[0], a->u, a->d[1]))
 
@@ -146,6 +147,7 @@ static void groups_of_processes(void) {
     fixpair_halo_sums *sums;
     uint64_t *map;
     size_t i;
+    fixpair_layout layout;
     begin("fof_merge", call_fof_merge);
     ARRAY(0, OUT, uint64_t, 12);
     ARRAY(1, OUT, size_t, 1);
@@ -178,6 +180,18 @@ static void groups_of_processes(void) {
     refuse_pointers_and_lengths();
     ACCEPTED(t.a.n[0] = 0);
     REFUSED(FIXPAIR_ERROR_OVERFLOW, t.a.n[0] = SIZE_MAX >> (sizeof(size_t) * 8 - 33));
+
+    begin("halo_count", call_halo_count);
+    ARRAY(0, OUT, size_t, 1);
+    ARRAY(1, IN, uint64_t, 8);
+    MUST(fixpair_halos_scratch(&layout, 8));
+    SCRATCH_OF(2, layout.size);
+    exec_at(3);
+    length(0, 8, FREE);
+    length(1, layout.size, SCRATCH);
+    t.a.u = 2;
+    refuse_pointers_and_lengths();
+    REFUSED(FIXPAIR_ERROR_RANGE, t.a.u = 0);
 
     begin("halo_sums_merge", call_halo_sums_merge);
     sums = sums_at(0, OUT, 2);

@@ -269,7 +269,7 @@ OPTIONAL = {"white_modes": [3, 4, 6], "fft_init": [6], "initial_conditions_scrat
             "drift": [6, 7, 8], "evolve": [4, 7, 15, 16], "halos": [6, 12], "halo_sums": [6, 13], "fof_labels": [9]}
 EXEC = ("particle_ids", "potential_amplitude_table", "alpha_table", "impose", "modes_from_field", "scale_modes",
         "copy_modes", "add_local", "second_order_source", "displacement", "add_cells", "copy_cells", "interlace",
-        "shell_modes", "compensate", "forces", "force", "potential", "fof_relabel", "spheres", "refine_centres")
+        "shell_modes", "compensate", "forces", "force", "potential", "fof_relabel", "halo_count", "spheres", "refine_centres")
 # Sizes that follow a pointer and are not its length: sides, an axis, a number of threads.
 NO_LENGTH = {"mode_table_length": 1, "fft_tables_scratch": 1, "fft_scratch": 1, "brick_whole": 1, "brick_slab": 1,
              "brick_transposed_slab": 1, "threads_create": 2, "displacement": 5, "displace": 6, "deposit_scratch": 2,

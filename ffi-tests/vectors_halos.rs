@@ -4,7 +4,7 @@ use fixpair::cosmology::Cosmology;
 use fixpair::exec::Serial;
 use fixpair::halos::{
     Density, Halo, HaloSums, Overdensity, Shrink, Sphere, fof_labels, fof_labels_scratch, fof_merge,
-    fof_relabel, halo_sums, halo_sums_merge, halos, halos_finish, halos_scratch, linking_length,
+    fof_relabel, halo_count, halo_sums, halo_sums_merge, halos, halos_finish, halos_scratch, linking_length,
     particle_mass, refine_centres, spheres, spheres_scratch,
 };
 use fixpair::pm::Positions;
@@ -123,6 +123,9 @@ pub(crate) fn halo_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
         hash = of_halos(hash, &list[..count]);
     }
     assert!(count >= CLUMPS / 2, "there are {count} halos to speak of");
+    let groups = halo_count(&named, LEAST_MEMBERS, memory.bytes(layout.size), &Serial).expect("a count");
+    assert_eq!(groups, count);
+    add("halo_count", Hash::new().integers(&[groups as u64]));
     add("halos", hash);
     let mut sums = [HaloSums::default(); PARTICLES / LEAST_MEMBERS as usize];
     let scratch = memory.bytes(layout.size);

@@ -698,7 +698,7 @@ typedef struct fixpair_progress {
 typedef struct fixpair_observer {
   /* Handed to observe as it is. */
   void *context;
-  /* Returns 0 to go on; anything else ends the run after the step at hand with FIXPAIR_ERROR_STOPPED. */
+  /* Returns 0 to go on; anything else ends the run after the step at hand with FIXPAIR_ERROR_STOPPED, unless there is none after it. */
   int32_t (*observe)(void *context, const struct fixpair_progress *progress);
 } fixpair_observer;
 
@@ -2303,8 +2303,8 @@ fixpair_status_t fixpair_evolve_scratch_f32(struct fixpair_layout *scratch,
  *
  * At two cells a particle or more (B >= 2) keep the four-point gradient and leave law.window at 0: a lattice of particles has images of its modes
  * there, which an exact gradient lets grow (10% in P(k)) and sharpening amplifies. At one cell a particle FIXPAIR_WINDOW_PCS with law.window the
- * same moves the largest modes to 1e-5. Equal steps of a suit late times better than equal steps of ln a. With B = 2, CIC and 20 steps from z = 32,
- * P(k) of particles 2 Mpc/h apart is within 3% of HMcode's for k < 0.25 h/Mpc.
+ * same gets the power of the largest modes right to 1e-4. Equal steps of a suit late times better than equal steps of ln a. With B = 2, CIC and 20 steps from z = 32,
+ * P(k) of particles 2 Mpc/h apart is within 4% of HMcode's for k < 0.25 h/Mpc.
  *
  * The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its
  * transform, fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
@@ -2323,7 +2323,7 @@ fixpair_status_t fixpair_evolve_scratch_f32(struct fixpair_layout *scratch,
  *      exec      or NULL
  * Returns: 0; FIXPAIR_ERROR_STOPPED if the observer asked for it: go on with the same list whenever you like; FIXPAIR_ERROR_NULL (also for COLA
  *          without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE (also for a list that does not increase, an epoch or output
- *          outside it, and no particles), _CHOICE, _VERSION, _SCRATCH, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were,
+ *          outside it, and no particles), _CHOICE, _VERSION, _SCRATCH, _CONVERGENCE, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were,
  *          unless NOT_FINITE comes from a velocity or displacement, or from particles that move beyond all numbers. After that and after
  *          FIXPAIR_ERROR_HOOK they are undefined
  * Cost: a step is four transforms, a deposit, a kick and a drift; memory beyond the particles: three meshes
@@ -2513,19 +2513,39 @@ fixpair_status_t fixpair_particle_mass(double *mass,
                                        uint64_t particles_total);
 
 /*
- * Scratch of fixpair_halos_* and fixpair_halo_sums_*: 12 bytes a particle, and at most 4.3 MB.
+ * Scratch of fixpair_halo_count, fixpair_halos_* and fixpair_halo_sums_*: 12 bytes a particle, and at most 4.3 MB.
  *
  * Out: scratch
  * In:  particles  as many as will be passed, or more
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, FIXPAIR_ERROR_OVERFLOW for 2^32 particles and more
  */
-fixpair_status_t fixpair_halos_scratch(struct fixpair_layout *scratch, size_t particles);
+fixpair_status_t fixpair_halos_scratch(struct fixpair_layout *scratch,
+                                       size_t particles);
+
+/*
+ * How many groups have n_min particles and more: the places that fixpair_halos_* needs.
+ *
+ * Out: count
+ * In:  labels   len labels, as for fixpair_halos_f64
+ *      n_min    1 or more
+ *      scratch  scratch_len bytes, see fixpair_halos_scratch
+ *      exec     or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _SCRATCH, _HOOK, FIXPAIR_ERROR_RANGE for n_min = 0
+ * Cost: most of that of fixpair_halos_f64
+ */
+fixpair_status_t fixpair_halo_count(size_t *count,
+                                    const uint64_t *labels,
+                                    size_t len,
+                                    uint64_t n_min,
+                                    void *scratch,
+                                    size_t scratch_len,
+                                    const struct fixpair_exec *exec);
 
 /*
  * Catalogue of the groups of n_min particles and more: the largest first, of equal ones the smaller label first.
  *
  * Out: halos          the first `count` are written
- *      count          how many: at most len / n_min
+ *      count          how many: see fixpair_halo_count; at most len / n_min
  * In:  halos_len      places in halos
  *      labels         len labels: of fixpair_fof_labels_f64, or any other numbers that tell groups apart
  *      position       of len particles

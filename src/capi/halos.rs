@@ -39,7 +39,7 @@ pub unsafe extern "C" fn fixpair_particle_mass(
     })())
 }
 
-/// Scratch of fixpair_halos_* and fixpair_halo_sums_*: 12 bytes a particle, and at most 4.3 MB.
+/// Scratch of fixpair_halo_count, fixpair_halos_* and fixpair_halo_sums_*: 12 bytes a particle, and at most 4.3 MB.
 ///
 /// Out: scratch
 /// In:  particles  as many as will be passed, or more
@@ -53,10 +53,45 @@ pub unsafe extern "C" fn fixpair_halos_scratch(scratch: *mut Layout, particles: 
     code(unsafe { query(scratch, particles, halos::halos_scratch) })
 }
 
+/// How many groups have n_min particles and more: the places that fixpair_halos_* needs.
+///
+/// Out: count
+/// In:  labels   len labels, as for fixpair_halos_f64
+///      n_min    1 or more
+///      scratch  scratch_len bytes, see fixpair_halos_scratch
+///      exec     or NULL
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _SCRATCH, _HOOK, FIXPAIR_ERROR_RANGE for n_min = 0
+/// Cost: most of that of fixpair_halos_f64
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated; the hooks keep their contracts.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_halo_count(
+    count: *mut usize,
+    labels: *const u64,
+    len: usize,
+    n_min: u64,
+    scratch: *mut c_void,
+    scratch_len: usize,
+    exec: *const fixpair_exec,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise.
+        unsafe {
+            let (count, labels) = (border.write_one(count)?, border.read(labels, len)?);
+            let scratch = border.scratch(scratch, scratch_len)?;
+            let exec = HostExec::new(&mut border, exec)?;
+            *count = halos::halo_count(labels, n_min, scratch, &exec)?;
+            Ok(())
+        }
+    })())
+}
+
 /// Catalogue of the groups of n_min particles and more: the largest first, of equal ones the smaller label first.
 ///
 /// Out: halos          the first `count` are written
-///      count          how many: at most len / n_min
+///      count          how many: see fixpair_halo_count; at most len / n_min
 /// In:  halos_len      places in halos
 ///      labels         len labels: of fixpair_fof_labels_f64, or any other numbers that tell groups apart
 ///      position       of len particles

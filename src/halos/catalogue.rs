@@ -71,7 +71,7 @@ fn sort(halos: &mut [Halo]) {
     sort_by_size(halos, |halo| (halo.members, halo.label));
 }
 
-/// Scratch of [`halos`] and [`halo_sums`](super::halo_sums): 12 bytes a particle, and at most 4.3 MB.
+/// Scratch of [`halo_count`], [`halos`] and [`halo_sums`](super::halo_sums): 12 bytes a particle, and at most 4.3 MB.
 ///
 /// # Errors
 /// `Overflow` for 2^32 particles and more, or if the bytes do not fit the address space.
@@ -79,9 +79,24 @@ pub fn halos_scratch(particles: usize) -> Result<Layout> {
     members::layout(particles)
 }
 
+/// How many groups have `n_min` particles and more: the places that [`halos`] needs.
+///
+/// `labels`: as for [`halos`]. `scratch`: see [`halos_scratch`].
+///
+/// # Errors
+/// `Range` for `n_min` = 0; `Overflow`, `Scratch`, `Alignment`, `Hook`.
+///
+/// Cost: most of that of [`halos`].
+pub fn halo_count(labels: &[u64], n_min: u64, scratch: &mut [u8], exec: &dyn Exec) -> Result<usize> {
+    if n_min == 0 {
+        return Err(Error::Range);
+    }
+    Ok(Members::new(labels, &|_, members| members >= n_min, scratch, exec)?.groups())
+}
+
 /// Writes the groups of `n_min` particles and more, the largest first and of equal ones the smaller label first. Returns how many.
 ///
-/// `halos`: particles / `n_min` of them are always enough. `labels`: one a particle, from [`fof_labels`](super::fof_labels), or any other
+/// `halos`: [`halo_count`] says how many; particles / `n_min` of them are always enough. `labels`: one a particle, from [`fof_labels`](super::fof_labels), or any other
 /// numbers that tell groups apart. `particle_mass`: see [`particle_mass`](super::particle_mass).
 ///
 /// # Errors

@@ -33,7 +33,7 @@ mod periodic;
 mod sets;
 mod sort;
 
-pub use catalogue::{Halo, halos, halos_finish, halos_scratch};
+pub use catalogue::{Halo, halo_count, halos, halos_finish, halos_scratch};
 pub use fof::{fof_labels, fof_labels_scratch, linking_length};
 pub use overdensity::{Overdensity, particle_mass};
 pub use refine::{Shrink, refine_centres};
