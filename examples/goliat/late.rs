@@ -7,7 +7,7 @@ use fixpair::estimate::binning::Binning;
 use fixpair::estimate::compensation::Compensation;
 use fixpair::fft::Fft3;
 use fixpair::halos::{
-    Halo, fof_labels, fof_labels_scratch, halos, halos_scratch, linking_length, particle_mass,
+    Halo, fof_labels, fof_labels_scratch, halo_count, halos, halos_scratch, linking_length, particle_mass,
 };
 use fixpair::pm::Positions;
 
@@ -81,7 +81,8 @@ fn centres(universe: &Universe<'_>, position: &[f32]) -> Result<Vec<f32>, Failur
     fof_labels(&mut labels, &positions, None, universe.length, length, scratch.bytes(), exec)?;
     drop(scratch);
     let mut scratch = Memory::new(halos_scratch(particles)?);
-    let mut catalogue = vec![Halo::default(); particles / LEAST as usize];
+    let groups = halo_count(&labels, LEAST, scratch.bytes(), exec)?;
+    let mut catalogue = vec![Halo::default(); groups];
     let mass = mass(universe.size, universe.length)?;
     let length = universe.length;
     let count = halos(&mut catalogue, &labels, &positions, None, length, LEAST, mass, scratch.bytes(), exec)?;
