@@ -1,8 +1,11 @@
 //! A periodic box: coordinates brought home, differences and distances to the nearest image.
 
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use crate::exec::Exec;
 use crate::pm::columns::Positions;
 use crate::real::Real;
-use crate::scratch::Plain;
+use crate::scratch::{Arena, Layout, Plain};
 use crate::status::{Error, Result};
 
 /// The sides that are taken: squares of lengths in them neither vanish nor overflow.
@@ -81,11 +84,7 @@ pub(super) fn pieces(total: usize, length: usize, i: usize) -> core::ops::Range<
 }
 
 /// Are all coordinates finite?
-pub(super) fn check_finite<T: Real>(
-    positions: &Positions<'_, T>,
-    exec: &dyn crate::exec::Exec,
-) -> Result<()> {
-    use core::sync::atomic::{AtomicBool, Ordering};
+pub(super) fn check_finite<T: Real>(positions: &Positions<'_, T>, exec: &dyn Exec) -> Result<()> {
     let lost = AtomicBool::new(false);
     let total = positions.len();
     exec.parallel_for(total.div_ceil(CHECKED), &|chunk| {
@@ -106,6 +105,5 @@ const CHECKED: usize = 1 << 15;
 
 /// Borrows bytes as values of one type.
 pub(super) fn view<T: Plain>(bytes: &mut [u8], count: usize) -> Result<&mut [T]> {
-    use crate::scratch::{Arena, Layout};
     Arena::new(bytes, Layout::EMPTY.and::<T>(count)?)?.take(count)
 }
