@@ -571,7 +571,7 @@ typedef struct fixpair_positions_f32 {
  *
  *    code                                 laplacian   gradient    window, power   split_scale
  *    (init); FastPM naive                 EXACT       EXACT       none            0
- *    FastPM 1_4, its default              EXACT       FOUR_POINT  none            0
+ *    FastPM 1_4, fixpair_gravity_init     EXACT       FOUR_POINT  none            0
  *    FastPM 3_4                           TWO_POINT   FOUR_POINT  none            0
  *    FastPM 5_4                           FOUR_POINT  FOUR_POINT  none            0
  *    FastPM 3_2                           TWO_POINT   EXACT       none            0
@@ -2260,7 +2260,7 @@ fixpair_status_t fixpair_logarithmic_steps(double *scale_factors, size_t len, do
 
 /*
  * Fills the gravity: the GOLIAT cosmology, km/s and Mpc/h, FastPM, cloud in cell, and the force law of fixpair_force_law_init but for a gradient of
- * four points, which does not see the lattice of the particles: FastPM's own choice. box_size is 0, which runs refuse: set it, and the cosmology
+ * four points, which does not see the lattice of the particles: FastPM's kernel 1_4. box_size is 0, which runs refuse: set it, and the cosmology
  * that the initial conditions have.
  *
  * Out: gravity

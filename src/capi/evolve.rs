@@ -21,7 +21,7 @@ use crate::scratch::Layout;
 use crate::status::Result;
 
 /// Fills the gravity: the GOLIAT cosmology, km/s and Mpc/h, FastPM, cloud in cell, and the force law of fixpair_force_law_init but for a gradient of
-/// four points, which does not see the lattice of the particles: FastPM's own choice. box_size is 0, which runs refuse: set it, and the cosmology
+/// four points, which does not see the lattice of the particles: FastPM's kernel 1_4. box_size is 0, which runs refuse: set it, and the cosmology
 /// that the initial conditions have.
 ///
 /// Out: gravity

@@ -27,7 +27,7 @@ pub const FIXPAIR_DIFFERENCE_FOUR_POINT: i32 = 2;
 ///
 ///    code                                 laplacian   gradient    window, power   split_scale
 ///    (init); FastPM naive                 EXACT       EXACT       none            0
-///    FastPM 1_4, its default              EXACT       FOUR_POINT  none            0
+///    FastPM 1_4, fixpair_gravity_init     EXACT       FOUR_POINT  none            0
 ///    FastPM 3_4                           TWO_POINT   FOUR_POINT  none            0
 ///    FastPM 5_4                           FOUR_POINT  FOUR_POINT  none            0
 ///    FastPM 3_2                           TWO_POINT   EXACT       none            0

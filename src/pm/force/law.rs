@@ -69,7 +69,9 @@ const HIGHEST_POWER: u32 = 4;
 
 /// The force on a mesh: what the modes of the density contrast are multiplied by.
 ///
-///     phi_k = - S(k) / (W(k)^power K2(k)) delta_k,     F_k = - i K_a(k) phi_k,     S(k) = exp(-k^2 r_s^2)
+/// ```text
+/// phi_k = - S(k) / (W(k)^power K2(k)) delta_k,     F_k = - i K_a(k) phi_k,     S(k) = exp(-k^2 r_s^2)
+/// ```
 ///
 /// K2 is minus the Laplacian, i K_a the gradient. The default is exact in both, with no window and no split; for runs with more than one cell a
 /// particle [`ForceLaw::FOUR_POINT`] is the better one.
@@ -86,7 +88,7 @@ pub struct ForceLaw {
 }
 
 impl ForceLaw {
-    /// Exact Laplacian and four-point gradient: FastPM's own choice (its kernel 1_4). The gradient vanishes at the Nyquist wavenumber of the mesh,
+    /// Exact Laplacian and four-point gradient: FastPM's kernel 1_4. The gradient vanishes at the Nyquist wavenumber of the mesh,
     /// where with two cells a particle the lattice of the particles has its first images; an exact one lets them grow, which adds 10% to P(k) at
     /// half the particles' Nyquist wavenumber by z = 0.
     pub const FOUR_POINT: Self = Self {

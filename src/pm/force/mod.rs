@@ -1,6 +1,8 @@
 //! Forces on a mesh: from modes of the density to modes of the force.
 //!
-//!     F = -grad inverse-Laplacian delta,     in Fourier space F_k = + i k/k^2 delta_k,
+//! ```text
+//! F = -grad inverse-Laplacian delta,     in Fourier space F_k = + i k/k^2 delta_k,
+//! ```
 //!
 //! (Hockney & Eastwood 1988), in the unit of the box side L: for a linear field it is the Zel'dovich displacement x - q itself, and
 //! div F = -delta. The peculiar potential is 3/2 Omega_m H0^2/a times [`potential`]. [`ForceLaw`] says how derivatives are taken, what is divided
@@ -9,7 +11,7 @@
 //! | code | `laplacian` | `gradient` | `window` | `split_scale` |
 //! |---|---|---|---|---|
 //! | the default; FastPM `naive` | `Exact` | `Exact` | none | 0 |
-//! | FastPM `1_4`, its default | `Exact` | `FourPoint` | none | 0 |
+//! | FastPM `1_4`; [`ForceLaw::FOUR_POINT`] | `Exact` | `FourPoint` | none | 0 |
 //! | FastPM `3_4`; `5_4`; `3_2` | `TwoPoint`; `FourPoint`; `TwoPoint` | `FourPoint`; `FourPoint`; `Exact` | none | 0 |
 //! | FastPM `eastwood`; `gadget` | `Exact` | `Exact`; `FourPoint` | (CIC, 2) | 0 |
 //! | real-space PM: 7-point Laplacian, centred differences | `TwoPoint` | `TwoPoint` | none | 0 |
@@ -17,7 +19,11 @@
 //!
 //! A Tree-PM host adds the short-range force of Springel 2005, astro-ph/0505010, eq. 19-21: its potential is that of a point times erfc(r/2 r_s), so
 //! that a pair feels
-//!     1/r^2 [erfc(r/2 r_s) + r/(r_s sqrt pi) exp(-r^2/4 r_s^2)]
+//!
+//! ```text
+//! 1/r^2 [erfc(r/2 r_s) + r/(r_s sqrt pi) exp(-r^2/4 r_s^2)]
+//! ```
+//!
 //! of Newton's force directly and the rest from the mesh.
 //!
 //! Of total weight M, a particle of weight w pulls with w/M L^3/(4 pi r^2). Any of these forces, read out with the window of the deposit, is
