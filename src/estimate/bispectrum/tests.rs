@@ -1,3 +1,5 @@
+//! Bispectra against their definition, and what their tests share.
+
 use std::vec;
 use std::vec::Vec;
 
@@ -16,7 +18,9 @@ use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
 
+mod bits;
 mod f_nl;
+mod refusals;
 
 /// Edges of shells of `width` whose nearest multiple of it is 1, 2, 3 ...
 fn nearest(width: f64, shells: usize) -> Vec<u64> {
@@ -162,31 +166,6 @@ fn triangles_come_in_any_order() {
     assert!(whole(&[], &edges, &modes, n, 3, &Serial).unwrap().0.is_empty());
 }
 
-fn bits_do_not_depend_on_memory<T: Real>() {
-    let (n, shells) = (32, 14);
-    let edges: Vec<u64> = (0..=shells).map(|s| (s + 1) * (s + 1)).collect();
-    let modes = modes::<T>(n, 11);
-    let triangles = closed(&edges, Some(&centres(shells as usize)));
-    let mut taken = Vec::new();
-    let (sums, _) = whole(&triangles, &edges, &modes, n, 14, &Serial).unwrap();
-    for meshes in 3..=15 {
-        let (other, made) = whole(&triangles, &edges, &modes, n, meshes, &Serial).unwrap();
-        assert_eq!(other, sums, "{meshes}");
-        taken.push(made);
-    }
-    assert_eq!(taken[11..], [14, 14], "each shell once");
-    // Shells that no triangle names are not transformed.
-    let squeezed = [[0, 9, 9], [0, 10, 10], [0, 13, 13]];
-    assert_eq!(whole(&squeezed, &edges, &modes, n, 5, &Serial).unwrap().1, 4);
-    assert!(whole(&squeezed, &edges, &modes, n, 3, &Serial).unwrap().1 <= 6);
-}
-
-#[test]
-fn any_number_of_meshes_gives_the_same_bits() {
-    bits_do_not_depend_on_memory::<f32>();
-    bits_do_not_depend_on_memory::<f64>();
-}
-
 /// The transforms that the documentation names.
 #[test]
 fn forty_shells_take_the_stated_transforms() {
@@ -222,73 +201,6 @@ fn transforms(meshes: usize) -> usize {
     let scratch = memory(bispectrum_scratch(&fft, 40, triangles.len()).unwrap());
     let mut fields = vec![0.0; bispectrum_meshes(&fft, meshes).unwrap()];
     bispectrum(&mut sums, &triangles, &edges, &[], &mut fft, &mut fields, scratch, &Serial).unwrap()
-}
-
-fn slabs<T: Real>() {
-    let (n, edges) = (24, [1, 5, 12, 30, 61, 100]);
-    let mut fft = serial::<T>(n);
-    let modes = modes::<T>(n, 5);
-    let triangles = closed(&edges, None);
-    let (sums, _) = whole(&triangles, &edges, &modes, n, 5, &Serial).unwrap();
-    let fields: Vec<Vec<T>> = edges
-        .windows(2)
-        .map(|edge| {
-            let mut field = vec![T::ZERO; fft.length()];
-            shell_modes(&mut field, &modes, fft.fourier(), edge[0], edge[1], &Serial).unwrap();
-            fft.inverse(&mut field).unwrap();
-            // Padding is not read.
-            for row in field.chunks_exact_mut(n + 2) {
-                row[n..].fill(T::from_f64(f64::NAN));
-            }
-            field
-        })
-        .collect();
-    let add = |sums: &mut [ExactSum], start: usize, count: usize, exec: &dyn Exec| {
-        let slab = Brick::slab(n, Space::Configuration, start, count).unwrap();
-        let plane = n * (n + 2);
-        let parts: Vec<&[T]> = fields.iter().map(|f| &f[start * plane..(start + count) * plane]).collect();
-        let scratch = memory(bispectrum_sums_scratch::<T>(&slab, parts.len(), triangles.len()).unwrap());
-        bispectrum_sums(sums, &triangles, &parts, &slab, scratch, exec).unwrap();
-    };
-    for threads in [1, 2, 5] {
-        let pool = Threads::new(threads).unwrap();
-        let mut added = vec![ExactSum::ZERO; triangles.len()];
-        add(&mut added, 0, n, &pool);
-        assert_eq!(added, sums, "{threads} threads");
-    }
-    let mut added = vec![ExactSum::ZERO; triangles.len()];
-    for (start, count) in [(17, 7), (0, 1), (4, 13), (1, 3), (24, 0)] {
-        add(&mut added, start, count, &Serial);
-    }
-    assert_eq!(added, sums, "slabs");
-    // The same cells with other strides: z outermost.
-    let strides = [n, 1, n * n];
-    let turned = Brick::general(n, Space::Configuration, [0; 3], [n; 3], strides).unwrap();
-    let moved: Vec<Vec<T>> = fields
-        .iter()
-        .map(|field| {
-            let mut out = vec![T::ZERO; n * n * n];
-            for x in 0..n {
-                for y in 0..n {
-                    for z in 0..n {
-                        out[x * n + y + z * n * n] = field[(x * n + y) * (n + 2) + z];
-                    }
-                }
-            }
-            out
-        })
-        .collect();
-    let parts: Vec<&[T]> = moved.iter().map(Vec::as_slice).collect();
-    let scratch = memory(bispectrum_sums_scratch::<T>(&turned, parts.len(), triangles.len()).unwrap());
-    let mut added = vec![ExactSum::ZERO; triangles.len()];
-    bispectrum_sums(&mut added, &triangles, &parts, &turned, scratch, &Serial).unwrap();
-    assert_eq!(added, sums, "strides");
-}
-
-#[test]
-fn slabs_threads_and_strides_give_the_same_bits() {
-    slabs::<f32>();
-    slabs::<f64>();
 }
 
 #[test]
@@ -378,129 +290,4 @@ fn values_become_spectra() {
     }
     assert_eq!(normalise(&mut b, &[1; 3], 0, 1.0, 1.0), Err(Error::MeshSize));
     assert_eq!(normalise(&mut b, &[1; 2], 4, 1.0, 1.0), Err(Error::Length));
-}
-
-#[test]
-fn bad_lists_are_refused() {
-    let edges = [1, 4, 9, 16];
-    let mut triangles = [[0; 3]; 2];
-    for (edges, centres, error) in [
-        (&[1_u64][..], None, Error::Table),
-        (&[1, 1], None, Error::Table),
-        (&[4, 1], None, Error::Table),
-        (&edges, Some(&[1.0, 2.0][..]), Error::Length),
-        (&edges, Some(&[1.0, 1.0, 2.0]), Error::Table),
-        (&edges, Some(&[-1.0, 1.0, 2.0]), Error::Table),
-        (&edges, Some(&[1.0, f64::NAN, 2.0]), Error::NotFinite),
-        (&edges, None, Error::Length),
-    ] {
-        assert_eq!(closed_triangles(&mut triangles, edges, centres), Err(error));
-    }
-    assert_eq!(squeezed_triangles(&mut triangles, 3, 3), Err(Error::Range));
-    assert_eq!(squeezed_triangles(&mut triangles, 0, 3), Err(Error::Length));
-
-    let counting = |triangles: &[Triangle], edges: &[u64], n| counts(triangles, edges, n, &Serial);
-    assert_eq!(counting(&[[0, 1, 3]], &edges, 8), Err(Error::Range), "no such shell");
-    assert_eq!(counting(&[[0, 1, 2]], &[1, 4, 9, 17], 8), Err(Error::Range), "beyond n/2");
-    assert_eq!(counting(&[[0, 0, 0]], &[2, 1], 8), Err(Error::Table));
-    assert_eq!(counting(&[[0, 0, 0]], &edges, 9), Err(Error::MeshSize));
-    let scratch = memory(triangle_counts_scratch(&edges, 8, &[[0; 3]]).unwrap());
-    assert_eq!(triangle_counts(&mut [0; 2], &[[0; 3]], &edges, 8, scratch, &Serial), Err(Error::Length));
-    assert_eq!(
-        triangle_counts(&mut [0], &[[0; 3]], &edges, 8, &mut scratch[64..], &Serial),
-        Err(Error::Scratch)
-    );
-
-    let n = 8;
-    let data = modes::<f64>(n, 1);
-    let summing = |triangles: &[Triangle], edges: &[u64], meshes| {
-        whole(triangles, edges, &data, n, meshes, &Serial).map(|_| ())
-    };
-    assert_eq!(summing(&[[0, 1, 3]], &edges, 3), Err(Error::Range));
-    assert_eq!(summing(&[[0, 1, 2]], &edges, 2), Err(Error::Length));
-    assert_eq!(summing(&[[0, 1, 2]], &[1, 4, 9, 20], 3), Err(Error::Range));
-    let mut brick = Brick::whole(n, Space::Fourier).unwrap();
-    let mut out = data.clone();
-    assert_eq!(shell_modes(&mut out[1..], &data, &brick, 1, 4, &Serial), Err(Error::Length));
-    assert_eq!(shell_modes(&mut out, &data, &brick, 4, 4, &Serial), Err(Error::Table));
-    assert_eq!(shell_modes(&mut out, &data, &brick, 4, 17, &Serial), Err(Error::Range));
-    assert_eq!(out, data);
-    brick = Brick::whole(n, Space::Configuration).unwrap();
-    assert_eq!(shell_modes(&mut out, &data, &brick, 1, 4, &Serial), Err(Error::Brick));
-
-    let scratch = memory(bispectrum_sums_scratch::<f64>(&brick, 2, 1).unwrap());
-    let mut sums = [ExactSum::ZERO];
-    let mut add = |triangle: Triangle, fields: &[&[f64]], scratch: &mut [u8]| {
-        bispectrum_sums(&mut sums, &[triangle], fields, &brick, scratch, &Serial)
-    };
-    assert_eq!(add([0, 0, 2], &[&data, &data], scratch), Err(Error::Range));
-    assert_eq!(add([0, 0, 1], &[&data, &data[..9]], scratch), Err(Error::Length));
-    assert_eq!(add([0, 0, 1], &[&data, &data], &mut scratch[64..]), Err(Error::Scratch));
-    assert_eq!(add([0, 0, 0], &[&data, &[]], scratch), Ok(()), "a field that nobody asks for");
-}
-
-#[test]
-fn what_is_not_finite_is_never_silent() {
-    let n = 8;
-    let brick = Brick::whole(n, Space::Configuration).unwrap();
-    let scratch = memory(bispectrum_sums_scratch::<f32>(&brick, 2, 2).unwrap());
-    let good = vec![1.0_f32; brick.reals()];
-    for (bad, error) in
-        [(f32::NAN, Error::NotFinite), (f32::INFINITY, Error::NotFinite), (1e30, Error::NotFinite)]
-    {
-        let mut field = good.clone();
-        field[(7 * n + 3) * (n + 2) + 5] = bad;
-        let mut sums = [ExactSum::ZERO; 2];
-        let list = [[0, 0, 0], [1, 1, 0]];
-        let added = bispectrum_sums(&mut sums, &list, &[&good, &field], &brick, scratch, &Serial);
-        assert_eq!(added, Err(error), "{bad}");
-        assert_eq!(sums, [ExactSum::ZERO; 2], "untouched");
-    }
-    let mut bad = modes::<f64>(n, 1);
-    bad[2 * (n / 2 + 1)] = f64::NAN;
-    assert_eq!(whole(&[[0, 1, 1]], &[1, 4, 9], &bad, n, 3, &Serial).err(), Some(Error::NotFinite));
-    let mut lost = ExactSum::ZERO;
-    lost.add(f64::NAN);
-    let mut values = [1.0];
-    assert_eq!(bispectrum_values(&mut values, &[lost]), Err(Error::NotFinite));
-    assert_eq!(bispectrum_values(&mut values, &[]), Err(Error::Length));
-    assert_eq!(values, [1.0]);
-}
-
-fn paths_agree<T: Real>() {
-    let (shells, length) = (9, 64);
-    let triangles = closed(&nearest(1.0, shells), Some(&centres(shells)));
-    let mut order: Vec<u32> = (0..triangles.len() as u32).collect();
-    let (layout, count) = (Layout::EMPTY.and::<Block>(triangles.len()).unwrap(), triangles.len());
-    let mut arena = Arena::new(memory(layout), layout).unwrap();
-    let mut slots = vec![0; count];
-    let plan = plan(arena.take(count).unwrap(), &mut slots, &mut order, &triangles);
-    let fields: Vec<T> = (0..shells * length).map(|i| T::from_f64(libm::sin(i as f64 * 1.7) / 3.0)).collect();
-    let tile = Tile { outer: &fields, middle: &fields, apart: length, start: 0, length };
-    let sums = |simd: Simd| {
-        let mut sums = vec![T::ZERO; plan.sums * lanes::<T>()];
-        simd.vectorise(
-            #[inline(always)]
-            || add_tile(&mut sums, 0, plan.blocks, &tile),
-        );
-        sums
-    };
-    let portable = sums(Simd::Portable);
-    assert_eq!(portable, sums(Simd::detect()));
-    for (&t, &slot) in order.iter().zip(plan.slots) {
-        let lanes = lanes::<T>();
-        for lane in 0..lanes {
-            let field = |s: u32, cell: usize| fields[s as usize * length + cell];
-            let [i, j, k] = triangles[t as usize];
-            let cells = (lane..length).step_by(lanes);
-            let sum = cells.fold(T::ZERO, |sum, x| sum + field(i, x) * field(j, x) * field(k, x));
-            assert_eq!(portable[slot as usize * lanes + lane], sum, "{i} {j} {k}");
-        }
-    }
-}
-
-#[test]
-fn portable_and_avx2_products_are_the_same_bits() {
-    paths_agree::<f32>();
-    paths_agree::<f64>();
 }
