@@ -37,6 +37,8 @@ pub mod halos;
 
 pub mod estimate;
 
+pub mod variance;
+
 pub mod capi;
 
 #[cfg(all(feature = "freestanding", not(feature = "std"), not(test)))]

@@ -43,6 +43,10 @@ pub enum Error {
     Outside = -17,
     /// The caller's observer asked a run to stop: what it leaves behind is sound, and it can go on.
     Stopped = -18,
+    /// There are fewer independent estimates than the statistic needs.
+    Samples = -19,
+    /// A matrix is singular or not positive definite, or the data say nothing about a parameter.
+    Singular = -20,
 }
 
 /// What every kernel returns.
@@ -50,7 +54,7 @@ pub type Result<T> = core::result::Result<T, Error>;
 
 impl Error {
     /// All errors, in the order of their numbers.
-    pub const ALL: [Self; 18] = [
+    pub const ALL: [Self; 20] = [
         Self::Null,
         Self::Length,
         Self::Alignment,
@@ -69,6 +73,8 @@ impl Error {
         Self::Convergence,
         Self::Outside,
         Self::Stopped,
+        Self::Samples,
+        Self::Singular,
     ];
 
     /// The number that C sees.
@@ -115,6 +121,12 @@ impl Error {
                 c"a particle lies outside the brick: add ghost planes or send it to the process whose it is"
             }
             Self::Stopped => c"the observer asked to stop: call again with the same list to go on",
+            Self::Samples => {
+                c"too few independent estimates: add simulations or take fewer bins, see the documentation for how many"
+            }
+            Self::Singular => {
+                c"singular: a matrix is not positive definite, or the data do not constrain a parameter that is free"
+            }
         }
     }
 }

@@ -1,0 +1,123 @@
+//! Halo bias with primordial non-Gaussianity.
+//!
+//! ```text
+//! b(k) = b_g + b_phi f_NL/alpha(k, z),  b_phi = 2 delta_c (b_g - p)                  (Eq. bk)
+//! P_hh = b^2 P_lin,  P_hm = b P_lin
+//! ```
+//!
+//! alpha is that of [`Poisson::alpha`](crate::cosmology::Poisson::alpha) at the redshift of the halos, in the convention of f_NL. p = 1 is universality (Dalal et al. 2008, Slosar et al. 2008):
+//! b_phi depends on mass through b_g alone.
+
+use super::check::{fill, fill_two, finite, positive, result, same_length};
+use crate::math::sqrt;
+use crate::status::{Error, Result};
+
+/// Overdensity of spherical collapse.
+pub const DELTA_C: f64 = 1.686;
+
+/// The parameters of Eq. bk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Bias {
+    /// b_g: bias of a Gaussian universe.
+    pub b_g: f64,
+    /// p: 1 for universality.
+    pub p: f64,
+    /// f_NL, in the convention of alpha.
+    pub f_nl: f64,
+    /// delta_c: 1.686.
+    pub delta_c: f64,
+}
+
+impl Default for Bias {
+    /// b_g = p = 1, f_NL = 0.
+    fn default() -> Self {
+        Self { b_g: 1.0, p: 1.0, f_nl: 0.0, delta_c: DELTA_C }
+    }
+}
+
+impl Bias {
+    pub(super) fn check(&self) -> Result<()> {
+        finite(&[self.b_g, self.p, self.f_nl])?;
+        positive(&[self.delta_c])
+    }
+
+    /// b_phi f_NL: what 1/alpha is multiplied by.
+    pub(super) fn shift(&self) -> f64 {
+        2.0 * self.delta_c * (self.b_g - self.p) * self.f_nl
+    }
+}
+
+/// Whose spectrum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spectrum {
+    /// P_hh.
+    HaloHalo,
+    /// P_hm.
+    HaloMatter,
+}
+
+/// b(k) (Eq. bk).
+///
+/// # Errors
+/// `Length` for arrays of different lengths, `NotFinite`, `Range` for alpha or delta_c that is not positive, or a result that overflows.
+pub fn bias(out: &mut [f64], parameters: &Bias, alpha: &[f64]) -> Result<()> {
+    same_length(out.len(), &[alpha.len()])?;
+    parameters.check()?;
+    positive(alpha)?;
+    fill(out, |i| result(parameters.b_g + parameters.shift() / alpha[i]))
+}
+
+/// b^2 P_lin or b P_lin.
+///
+/// # Errors
+/// As [`fn@bias`].
+pub fn halo_power(
+    out: &mut [f64],
+    parameters: &Bias,
+    spectrum: Spectrum,
+    linear: &[f64],
+    alpha: &[f64],
+) -> Result<()> {
+    same_length(out.len(), &[linear.len(), alpha.len()])?;
+    parameters.check()?;
+    positive(alpha)?;
+    finite(linear)?;
+    fill(out, |i| {
+        let bias = parameters.b_g + parameters.shift() / alpha[i];
+        result(match spectrum {
+            Spectrum::HaloHalo => bias * bias * linear[i],
+            Spectrum::HaloMatter => bias * linear[i],
+        })
+    })
+}
+
+/// The bias of a measured spectrum, sqrt(P_hh/P_lin) or P_hm/P_lin, with the error that sigma of the spectrum makes.
+///
+/// # Errors
+/// `Length` for arrays of different lengths, `NotFinite`, `Range` for P_lin or sigma that is not positive, P_hh that is not positive, or a result that
+/// overflows.
+pub fn measured_bias(
+    out: &mut [f64],
+    error: &mut [f64],
+    spectrum: Spectrum,
+    power: &[f64],
+    sigma: &[f64],
+    linear: &[f64],
+) -> Result<()> {
+    same_length(out.len(), &[power.len(), sigma.len(), linear.len()])?;
+    finite(power)?;
+    positive(sigma)?;
+    positive(linear)?;
+    fill_two(out, error, |i| {
+        let (ratio, sigma) = (result(power[i] / linear[i])?, result(sigma[i] / linear[i])?);
+        match spectrum {
+            Spectrum::HaloHalo if ratio > 0.0 => {
+                let bias = sqrt(ratio);
+                Ok([bias, result(sigma / (2.0 * bias))?])
+            }
+            Spectrum::HaloHalo => Err(Error::Range),
+            Spectrum::HaloMatter => Ok([ratio, sigma]),
+        }
+    })
+}

@@ -1,0 +1,286 @@
+//! Mean, variance, covariance and cross-covariance of samples that come one at a time.
+//!
+//! A state in the caller's memory holds the number of samples, their mean, and sums of squares about the mean (Welford 1962); states of
+//! different processes merge (Chan, Golub & LeVeque 1979). Rounding errors do not grow with the mean over the deviation, as those of
+//! sums of squares about zero do. A state is plain numbers: it may be copied, saved, and sent through MPI as it is.
+//!
+//! Several statistics vectors whose cross-covariances are wanted are one sample, one after another: every block of the covariance
+//! can be read.
+
+use core::ops::Range;
+
+use super::check::{fill, finite, same_length};
+use crate::math::sqrt;
+use crate::status::{Error, Result};
+
+/// What a state keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Moments {
+    /// Mean and variance of each value.
+    Variance,
+    /// Mean and covariance of all pairs of values.
+    Covariance,
+}
+
+/// Larger samples are refused, so that no sum of squares overflows.
+pub const LARGEST_SAMPLE: f64 = 1e140;
+
+/// count, number of values, what is kept.
+const HEAD: usize = 3;
+/// Below it f64 holds every integer.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// Numbers in a state for samples of `values` values: 3 + 2 values, or 3 + values + values (values + 1)/2.
+///
+/// # Errors
+/// `Length` for no values, `Overflow` if the state does not fit the address space.
+pub fn ensemble_length(values: usize, moments: Moments) -> Result<usize> {
+    if values == 0 {
+        return Err(Error::Length);
+    }
+    let squares = match moments {
+        Moments::Variance => values,
+        Moments::Covariance => {
+            values.checked_add(1).and_then(|next| next.checked_mul(values)).ok_or(Error::Overflow)? / 2
+        }
+    };
+    let length = squares.checked_add(values).and_then(|sum| sum.checked_add(HEAD)).ok_or(Error::Overflow)?;
+    // As bytes too.
+    if length > isize::MAX as usize / size_of::<f64>() { Err(Error::Overflow) } else { Ok(length) }
+}
+
+/// A state without samples.
+///
+/// # Errors
+/// As [`ensemble_length`]; `Length` if the state does not have that many numbers.
+pub fn ensemble_init(state: &mut [f64], values: usize, moments: Moments) -> Result<()> {
+    same_length(state.len(), &[ensemble_length(values, moments)?])?;
+    state.fill(0.0);
+    state[1] = values as f64;
+    state[2] = f64::from(u8::from(moments == Moments::Covariance));
+    Ok(())
+}
+
+/// A state as it is read.
+struct View<'a> {
+    count: f64,
+    moments: Moments,
+    mean: &'a [f64],
+    squares: &'a [f64],
+}
+
+fn head(state: &[f64]) -> Result<(f64, usize, Moments)> {
+    let [count, values, moments, ..] = *state else { return Err(Error::Length) };
+    let moments = match moments {
+        0.0 => Moments::Variance,
+        1.0 => Moments::Covariance,
+        _ => return Err(Error::Version),
+    };
+    let integers = [count, values].iter().all(|&x| (0.0..EXACT).contains(&x) && libm::floor(x) == x);
+    if !integers || ensemble_length(values as usize, moments) != Ok(state.len()) {
+        return Err(Error::Version);
+    }
+    Ok((count, values as usize, moments))
+}
+
+fn view(state: &[f64]) -> Result<View<'_>> {
+    let (count, values, moments) = head(state)?;
+    let (mean, squares) = state[HEAD..].split_at(values);
+    Ok(View { count, moments, mean, squares })
+}
+
+impl View<'_> {
+    /// Sum of squares of values i and j, where it is kept.
+    fn square(&self, i: usize, j: usize) -> Option<f64> {
+        match self.moments {
+            Moments::Variance => (i == j).then(|| self.squares[i]),
+            Moments::Covariance => {
+                let (i, j) = (i.min(j), i.max(j));
+                Some(self.squares[row(i, self.mean.len()) + j - i])
+            }
+        }
+    }
+
+    fn two_or_more(&self) -> Result<()> {
+        if self.count < 2.0 { Err(Error::Samples) } else { Ok(()) }
+    }
+}
+
+/// Of values i and j, with N - 1.
+fn covariance(view: &View<'_>, i: usize, j: usize) -> Result<f64> {
+    let square = view.square(i, j).ok_or(Error::Choice)?;
+    super::check::result(square / (view.count - 1.0))
+}
+
+/// Where row i of an upper triangle begins.
+fn row(i: usize, values: usize) -> usize {
+    i * values - i * i.saturating_sub(1) / 2
+}
+
+/// Adds `weight` times the outer product of `shift` with itself.
+fn add_squares(
+    squares: &mut [f64],
+    moments: Moments,
+    values: usize,
+    weight: f64,
+    shift: impl Fn(usize) -> f64,
+) {
+    match moments {
+        Moments::Variance => {
+            for (i, square) in squares.iter_mut().enumerate() {
+                *square += weight * shift(i) * shift(i);
+            }
+        }
+        Moments::Covariance => {
+            let mut rest = squares;
+            for i in 0..values {
+                let (this, next) = rest.split_at_mut(values - i);
+                let factor = weight * shift(i);
+                for (j, square) in this.iter_mut().enumerate() {
+                    *square += factor * shift(i + j);
+                }
+                rest = next;
+            }
+        }
+    }
+}
+
+/// One more sample. Cost: one multiplication and addition for each number of the state.
+///
+/// # Errors
+/// `Length` if the sample has another number of values, `Version` for a state that [`ensemble_init`] did not make, `NotFinite`, and `Range`
+/// for values beyond [`LARGEST_SAMPLE`]. The state is untouched by all of them.
+pub fn ensemble_add(state: &mut [f64], sample: &[f64]) -> Result<()> {
+    let (count, values, moments) = head(state)?;
+    same_length(values, &[sample.len()])?;
+    finite(sample)?;
+    if sample.iter().any(|x| x.abs() > LARGEST_SAMPLE) {
+        return Err(Error::Range);
+    }
+    let (mean, squares) = state[HEAD..].split_at_mut(values);
+    let total = count + 1.0;
+    add_squares(squares, moments, values, count / total, |i| sample[i] - mean[i]);
+    for (mean, x) in mean.iter_mut().zip(sample) {
+        *mean += (x - *mean) / total;
+    }
+    state[0] = total;
+    Ok(())
+}
+
+/// Adds all samples of another state.
+///
+/// # Errors
+/// `Length` for a state of other samples, `Version` as [`ensemble_add`]. The state is untouched by both.
+pub fn ensemble_merge(state: &mut [f64], other: &[f64]) -> Result<()> {
+    let (count, values, moments) = head(state)?;
+    let from = view(other)?;
+    if from.mean.len() != values || from.moments != moments {
+        return Err(Error::Length);
+    }
+    if from.count == 0.0 {
+        return Ok(());
+    }
+    let (mean, squares) = state[HEAD..].split_at_mut(values);
+    let total = count + from.count;
+    for (square, more) in squares.iter_mut().zip(from.squares) {
+        *square += more;
+    }
+    add_squares(squares, moments, values, count * from.count / total, |i| from.mean[i] - mean[i]);
+    for (mean, other) in mean.iter_mut().zip(from.mean) {
+        *mean += (other - *mean) * (from.count / total);
+    }
+    state[0] = total;
+    Ok(())
+}
+
+/// Number of samples.
+///
+/// # Errors
+/// `Length` or `Version` for a state that [`ensemble_init`] did not make.
+pub fn ensemble_count(state: &[f64]) -> Result<u64> {
+    Ok(view(state)?.count as u64)
+}
+
+/// Mean of each value.
+///
+/// # Errors
+/// As [`ensemble_count`]; `Length` unless there is a place for each value; `Samples` without samples.
+pub fn ensemble_mean(out: &mut [f64], state: &[f64]) -> Result<()> {
+    let view = view(state)?;
+    same_length(view.mean.len(), &[out.len()])?;
+    if view.count == 0.0 {
+        return Err(Error::Samples);
+    }
+    out.copy_from_slice(view.mean);
+    Ok(())
+}
+
+/// Standard deviation of each value, with N - 1; over sqrt(N) it is the error of the mean.
+///
+/// # Errors
+/// As [`ensemble_mean`]; `Samples` for fewer than two.
+pub fn ensemble_deviation(out: &mut [f64], state: &[f64]) -> Result<()> {
+    let view = view(state)?;
+    same_length(view.mean.len(), &[out.len()])?;
+    view.two_or_more()?;
+    fill(out, |i| Ok(sqrt(covariance(&view, i, i)?)))
+}
+
+/// Standard error of the mean of each value.
+///
+/// # Errors
+/// As [`ensemble_deviation`].
+pub fn ensemble_error_of_mean(out: &mut [f64], state: &[f64]) -> Result<()> {
+    ensemble_deviation(out, state)?;
+    let root = sqrt(state[0]);
+    out.iter_mut().for_each(|error| *error /= root);
+    Ok(())
+}
+
+/// A block of the covariance, with N - 1: rows.len() rows of columns.len() values. `0..p`, `0..p` is the whole; `0..p`, `p..p + q` the
+/// cross-covariance of the first p values with the next q.
+///
+/// # Errors
+/// As [`ensemble_deviation`]; `Range` for values that samples do not have; `Choice` for what a state of variances does not keep.
+pub fn ensemble_covariance(
+    out: &mut [f64],
+    state: &[f64],
+    rows: Range<usize>,
+    columns: Range<usize>,
+) -> Result<()> {
+    block(out, state, rows, columns, covariance)
+}
+
+/// The same block of correlation coefficients.
+///
+/// # Errors
+/// As [`ensemble_covariance`]; `Singular` where a value does not vary.
+pub fn ensemble_correlation(
+    out: &mut [f64],
+    state: &[f64],
+    rows: Range<usize>,
+    columns: Range<usize>,
+) -> Result<()> {
+    block(out, state, rows, columns, |view, i, j| {
+        let both = sqrt(covariance(view, i, i)?) * sqrt(covariance(view, j, j)?);
+        if both > 0.0 { Ok((covariance(view, i, j)? / both).clamp(-1.0, 1.0)) } else { Err(Error::Singular) }
+    })
+}
+
+fn block(
+    out: &mut [f64],
+    state: &[f64],
+    rows: Range<usize>,
+    columns: Range<usize>,
+    of: impl Fn(&View<'_>, usize, usize) -> Result<f64>,
+) -> Result<()> {
+    let view = view(state)?;
+    let inside = |range: &Range<usize>| range.start <= range.end && range.end <= view.mean.len();
+    if !inside(&rows) || !inside(&columns) {
+        return Err(Error::Range);
+    }
+    same_length(rows.len().checked_mul(columns.len()).ok_or(Error::Overflow)?, &[out.len()])?;
+    view.two_or_more()?;
+    let width = columns.len();
+    fill(out, |at| of(&view, rows.start + at / width, columns.start + at % width))
+}

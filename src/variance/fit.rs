@@ -1,0 +1,194 @@
+//! The best bias parameters, by Gauss-Newton steps that cannot go uphill (Levenberg 1944, Marquardt 1963).
+
+use super::bias::Bias;
+use super::check::result;
+use super::likelihood::{BiasLikelihood, COLUMNS};
+use super::small::Triangle;
+use crate::math::sqrt;
+use crate::status::{Error, Result};
+
+/// b_g is fitted.
+pub const FREE_B_G: u32 = 1;
+/// p is fitted.
+pub const FREE_P: u32 = 2;
+/// f_NL is fitted.
+pub const FREE_F_NL: u32 = 4;
+
+/// The best parameters, their errors and their covariance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct BiasFit {
+    /// Where chi^2 is least.
+    pub value: Bias,
+    /// Standard errors of (b_g, p, f_NL), from the curvature there; 0 for those that are not free.
+    pub error: [f64; 3],
+    /// Covariance of (b_g, p, f_NL), row by row.
+    pub covariance: [f64; 9],
+    /// Least chi^2.
+    pub chi_squared: f64,
+    /// Bins less free parameters; 0 if there are not as many.
+    pub degrees: u64,
+}
+
+/// Which parameters are free: one, or b_g and one of the others, in the order b_g, p, f_NL.
+///
+/// p and f_NL enter as one product, so no data can tell them apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Free {
+    number: [usize; 2],
+    count: usize,
+}
+
+impl Free {
+    pub(super) fn new(mask: u32) -> Result<Self> {
+        let (number, count) = match mask {
+            FREE_B_G => ([0, 0], 1),
+            FREE_P => ([1, 0], 1),
+            FREE_F_NL => ([2, 0], 1),
+            m if m == FREE_B_G | FREE_P => ([0, 1], 2),
+            m if m == FREE_B_G | FREE_F_NL => ([0, 2], 2),
+            _ => return Err(Error::Choice),
+        };
+        Ok(Self { number, count })
+    }
+
+    /// Their numbers among (b_g, p, f_NL).
+    pub(super) fn numbers(&self) -> &[usize] {
+        &self.number[..self.count]
+    }
+
+    /// `at` with other values of those that are free.
+    #[inline]
+    pub(super) fn with(&self, at: &Bias, values: [f64; 2]) -> Bias {
+        let mut all = [at.b_g, at.p, at.f_nl];
+        for (number, value) in self.numbers().iter().zip(values) {
+            all[*number] = value;
+        }
+        Bias { b_g: all[0], p: all[1], f_nl: all[2], delta_c: at.delta_c }
+    }
+
+    pub(super) fn of(&self, at: &Bias) -> [f64; 2] {
+        self.number.map(|number| [at.b_g, at.p, at.f_nl][number])
+    }
+
+    fn b_g(&self) -> bool {
+        self.number[0] == 0
+    }
+}
+
+/// Derivatives of the six coefficients by (b_g, p, f_NL).
+fn slopes(at: &Bias) -> [[f64; COLUMNS]; 3] {
+    let (b, x) = (at.b_g, at.shift());
+    let of = |b_slope: f64, x_slope: f64| {
+        [2.0 * b * b_slope, 2.0 * (b_slope * x + b * x_slope), 2.0 * x * x_slope, b_slope, x_slope, 0.0]
+    };
+    let factor = 2.0 * at.delta_c;
+    [of(1.0, factor * at.f_nl), of(0.0, -factor * at.f_nl), of(0.0, factor * (at.b_g - at.p))]
+}
+
+/// The Jacobian by the free parameters and the residuals, as a triangle.
+fn linearised(likelihood: &BiasLikelihood, at: &Bias, free: &Free) -> Triangle<3> {
+    let root = Triangle(likelihood.root);
+    let slopes = slopes(at);
+    let mut columns = [[0.0; COLUMNS]; 2];
+    for (column, &number) in columns.iter_mut().zip(free.numbers()) {
+        *column = root.times(&slopes[number]);
+    }
+    let rest = likelihood.residuals(at);
+    let mut triangle = Triangle::EMPTY;
+    for i in 0..COLUMNS {
+        triangle.push([columns[0][i], columns[1][i], -rest[i]]);
+    }
+    triangle
+}
+
+const STEPS: usize = 500;
+/// A step that moves the model by less, in units of its errors, is the last.
+const SMALL: f64 = 1e-10;
+
+/// From one place downhill to a minimum with b_g > 0.
+fn descend(likelihood: &BiasLikelihood, start: &Bias, free: &Free) -> Result<(Bias, f64)> {
+    let count = free.numbers().len();
+    let (mut at, mut chi_squared) = (*start, likelihood.at(start));
+    let mut damping = 1e-3;
+    for _ in 0..STEPS {
+        let triangle = linearised(likelihood, &at, free);
+        let column = |j: usize| sqrt((0..=j).map(|i| triangle.0[i][j] * triangle.0[i][j]).sum());
+        let mut damped = triangle;
+        for j in 0..count {
+            let mut row = [0.0; 3];
+            row[j] = sqrt(damping) * column(j);
+            damped.push(row);
+        }
+        let step = damped.solve(count)?;
+        let moved = (0..count).map(|j| (column(j) * step[j]).abs()).fold(0.0, f64::max);
+        let values = free.of(&at);
+        let next = free.with(&at, [values[0] + step[0], values[1] + step[1]]);
+        let trial = likelihood.at(&next);
+        let small = SMALL * (1.0 + sqrt(chi_squared));
+        if trial <= chi_squared && (next.b_g > 0.0 || !free.b_g()) {
+            (at, chi_squared) = (next, trial);
+            damping = (0.1 * damping).max(1e-12);
+            if moved < small {
+                return Ok((at, chi_squared));
+            }
+        } else if moved < small {
+            // Rounding decides which of the two is lower.
+            return Ok((at, chi_squared));
+        } else {
+            damping *= 10.0;
+        }
+    }
+    Err(Error::Convergence)
+}
+
+/// The lowest of the minima that are found from `start` and from the bias that fits best without f_NL.
+pub(super) fn minimum(likelihood: &BiasLikelihood, start: &Bias, free: &Free) -> Result<(Bias, f64)> {
+    let column = |j: usize| (0..=j).map(|i| likelihood.root[i][j] * likelihood.root[i][j]).sum::<f64>();
+    let on =
+        |j: usize| (0..=j).map(|i| likelihood.root[i][j] * likelihood.root[i][5]).sum::<f64>() / column(j);
+    let b_g = if column(0) > 0.0 { sqrt(on(0).abs()) } else { on(3).abs() };
+    let plain = Bias { b_g, ..*start };
+    let none = Bias { f_nl: 0.0, ..plain };
+    let mut best: Result<(Bias, f64)> = Err(Error::Singular);
+    for place in [*start, plain, none] {
+        // Of what is not free the caller's value holds.
+        let place = free.with(start, free.of(&place));
+        let positive = place.b_g > 0.0;
+        if free.b_g() && !positive {
+            continue;
+        }
+        match (descend(likelihood, &place, free), best) {
+            (Ok(new), Ok(old)) if old.1 <= new.1 => best = Ok(old),
+            (Ok(new), _) => best = Ok(new),
+            (Err(error), Err(_)) => best = Err(error),
+            (Err(_), Ok(_)) => {}
+        }
+    }
+    best
+}
+
+/// The best values of the parameters in `free` (FREE_...), the others as in `start`.
+///
+/// The paper's cases: (i) b_g, (ii) b_g and p, (iii) b_g and f_NL; each of the three alone too. b_g > 0, since P_hh is the same for all signs turned.
+/// What is free need not be near: descents begin at `start` and at the bias of the spectrum itself.
+///
+/// # Errors
+/// `NotFinite`, `Choice` for other sets of parameters, `Range` for delta_c that is not positive, `Singular` where the data do not constrain a parameter (p where f_NL = 0,
+/// f_NL where b_g = p), `Convergence` if no minimum is found at b_g > 0.
+pub fn bias_fit(likelihood: &BiasLikelihood, start: &Bias, free: u32) -> Result<BiasFit> {
+    let free = Free::new(free)?;
+    likelihood.check()?;
+    start.check()?;
+    let (value, chi_squared) = minimum(likelihood, start, &free)?;
+    let inverse = linearised(likelihood, &value, &free).covariance(free.numbers().len())?;
+    let mut covariance = [0.0; 9];
+    for (i, &row) in free.numbers().iter().enumerate() {
+        for (j, &column) in free.numbers().iter().enumerate() {
+            covariance[3 * row + column] = result(inverse[i][j])?;
+        }
+    }
+    let error = [0, 4, 8].map(|at| sqrt(covariance[at]));
+    let degrees = likelihood.bins.saturating_sub(free.numbers().len() as u64);
+    Ok(BiasFit { value, error, covariance, chi_squared: result(chi_squared)?, degrees })
+}

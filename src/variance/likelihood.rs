@@ -1,0 +1,184 @@
+//! The likelihood of bias and f_NL, in the space of 36 numbers.
+//!
+//! ```text
+//! chi^2 = (d - m)^T C^-1 (d - m),  L ~ exp(-chi^2/2)                                  (Eq. chi2, likelihood)
+//! ```
+//!
+//! With x = 2 delta_c (b_g - p) f_NL, P_hh = b_g^2 P + 2 b_g x P/alpha + x^2 P/alpha^2 and P_hm = b_g P + x P/alpha: the model is a sum of five
+//! columns with coefficients (b_g^2, 2 b_g x, x^2, b_g, x). Columns and data, divided by sigma or by the root of the covariance, go row by
+//! row into a triangle R of 6 x 6 (Givens rotations), and chi^2 = |R c|^2 with c = (b_g^2, 2 b_g x, x^2, b_g, x, -1) from then on, whatever the number of bins.
+//! Being a sum of squares it loses no digits and is never negative.
+//!
+//! Only bins that are handed over are fitted: the paper takes k <= 0.09 h/Mpc.
+
+use super::bias::{Bias, Spectrum};
+use super::check::{finite, positive, result, same_length};
+use super::small::Triangle;
+use crate::math::sqrt;
+use crate::scratch::{Arena, Layout};
+use crate::status::{Error, Result};
+
+/// Five columns and the data.
+pub(super) const COLUMNS: usize = 6;
+
+/// All that measured spectra say of b_g, p and f_NL. Begins as [`BiasLikelihood::EMPTY`]; spectra that are independent are added, of P_hh, P_hm or both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct BiasLikelihood {
+    /// Values that were added.
+    pub bins: u64,
+    /// R, upper triangular.
+    pub root: [[f64; COLUMNS]; COLUMNS],
+}
+
+/// Measured spectra and what their model is made of, bin by bin.
+#[derive(Clone, Copy, Debug)]
+pub struct Spectra<'a> {
+    /// P_hh without shot noise, or P_hm, (Mpc/h)^3.
+    pub power: &'a [f64],
+    /// P_lin of matter at their redshift, averaged over the modes of the bin as theirs are.
+    pub linear: &'a [f64],
+    /// alpha(k, z) at their redshift.
+    pub alpha: &'a [f64],
+}
+
+impl Spectra<'_> {
+    fn check(&self) -> Result<()> {
+        same_length(self.power.len(), &[self.linear.len(), self.alpha.len()])?;
+        finite(self.power)?;
+        positive(self.linear)?;
+        positive(self.alpha)
+    }
+
+    /// The row of bin i.
+    fn row(&self, spectrum: Spectrum, i: usize) -> [f64; COLUMNS] {
+        let (power, linear) = (self.power[i], self.linear[i]);
+        let over = linear / self.alpha[i];
+        match spectrum {
+            Spectrum::HaloHalo => [linear, over, over / self.alpha[i], 0.0, 0.0, power],
+            Spectrum::HaloMatter => [0.0, 0.0, 0.0, linear, over, power],
+        }
+    }
+}
+
+impl BiasLikelihood {
+    /// No data.
+    /// cbindgen:ignore
+    pub const EMPTY: Self = Self { bins: 0, root: [[0.0; COLUMNS]; COLUMNS] };
+
+    fn with(&self, rows: u64, triangle: Triangle<COLUMNS>) -> Result<Self> {
+        finite(triangle.0.as_flattened()).map_err(|_| Error::Range)?;
+        Ok(Self { bins: self.bins.saturating_add(rows), root: triangle.0 })
+    }
+
+    /// Adds bins that do not correlate, each with its sigma (Eq. chi2).
+    ///
+    /// # Errors
+    /// `Length` for arrays of different lengths, `NotFinite`, `Range` for sigma, P_lin or alpha that is not positive, or numbers too extreme.
+    pub fn add(&mut self, spectrum: Spectrum, spectra: Spectra<'_>, sigma: &[f64]) -> Result<()> {
+        spectra.check()?;
+        same_length(sigma.len(), &[spectra.power.len()])?;
+        positive(sigma)?;
+        let mut triangle = Triangle(self.root);
+        for (i, sigma) in sigma.iter().enumerate() {
+            triangle.push(spectra.row(spectrum, i).map(|x| x / sigma));
+        }
+        *self = self.with(sigma.len() as u64, triangle)?;
+        Ok(())
+    }
+
+    /// Adds bins that correlate: the first `halo_halo` are P_hh, the rest P_hm.
+    ///
+    /// `root`: the lower triangle of their covariance, from [`covariance_root`](super::covariance). `precision`: what the inverse covariance is multiplied by:
+    /// 1, or [`hartlap_factor`](super::levels::hartlap_factor) for a covariance that was measured.
+    ///
+    /// # Errors
+    /// As [`BiasLikelihood::add`]; `Range` for `halo_halo` beyond the bins and for a precision that is not positive, `Singular` for a root with a zero on its diagonal,
+    /// `Scratch`.
+    pub fn add_correlated(
+        &mut self,
+        halo_halo: usize,
+        spectra: Spectra<'_>,
+        root: &[f64],
+        precision: f64,
+        scratch: &mut [u8],
+    ) -> Result<()> {
+        let bins = spectra.power.len();
+        spectra.check()?;
+        super::check::table(root, bins, bins)?;
+        positive(&[precision])?;
+        if halo_halo > bins {
+            return Err(Error::Range);
+        }
+        let mut arena = Arena::new(scratch, add_correlated_scratch(bins)?)?;
+        let white = arena.take::<[f64; COLUMNS]>(bins)?;
+        let scale = sqrt(precision);
+        let mut triangle = Triangle(self.root);
+        for i in 0..bins {
+            let spectrum = if i < halo_halo { Spectrum::HaloHalo } else { Spectrum::HaloMatter };
+            let line = &root[i * bins..=i * bins + i];
+            let mut row = spectra.row(spectrum, i);
+            for (factor, before) in line.iter().zip(&white[..i]) {
+                for (x, before) in row.iter_mut().zip(before) {
+                    *x -= factor * before;
+                }
+            }
+            if line[i] <= 0.0 {
+                return Err(Error::Singular);
+            }
+            white[i] = row.map(|x| x / line[i]);
+            triangle.push(white[i].map(|x| scale * x));
+        }
+        *self = self.with(bins as u64, triangle)?;
+        Ok(())
+    }
+
+    /// Adds the data of another likelihood, independent of these.
+    ///
+    /// # Errors
+    /// `NotFinite` or `Range` for numbers that no data have made.
+    pub fn merge(&mut self, other: &Self) -> Result<()> {
+        other.check()?;
+        let mut triangle = Triangle(self.root);
+        other.root.iter().for_each(|&row| triangle.push(row));
+        *self = self.with(other.bins, triangle)?;
+        Ok(())
+    }
+
+    /// chi^2 of given parameters (Eq. chi2).
+    ///
+    /// # Errors
+    /// `NotFinite`, `Range` for delta_c that is not positive or a result that overflows.
+    pub fn chi_squared(&self, parameters: &Bias) -> Result<f64> {
+        self.check()?;
+        parameters.check()?;
+        result(self.at(parameters))
+    }
+
+    pub(super) fn check(&self) -> Result<()> {
+        finite(self.root.as_flattened())?;
+        let below = |i: usize| self.root[i][..i].iter().any(|&x| x != 0.0);
+        if (0..COLUMNS).any(below) { Err(Error::Range) } else { Ok(()) }
+    }
+
+    /// The same for numbers that were checked.
+    #[inline]
+    pub(super) fn at(&self, parameters: &Bias) -> f64 {
+        self.residuals(parameters).iter().map(|r| r * r).sum()
+    }
+
+    /// R c: its squares sum to chi^2.
+    #[inline]
+    pub(super) fn residuals(&self, parameters: &Bias) -> [f64; COLUMNS] {
+        let (b, x) = (parameters.b_g, parameters.shift());
+        Triangle(self.root).times(&[b * b, 2.0 * b * x, x * x, b, x, -1.0])
+    }
+}
+
+/// Work space of [`BiasLikelihood::add_correlated`]: 48 bytes a bin.
+///
+/// # Errors
+/// `Overflow` if it does not fit the address space.
+pub fn add_correlated_scratch(bins: usize) -> Result<Layout> {
+    Layout::EMPTY.and::<[f64; COLUMNS]>(bins)
+}

@@ -1,0 +1,52 @@
+//! Averages of pairs, and the scatter per simulation.
+
+use super::check::{fill, fill_two, finite, not_negative, same_length};
+use crate::math::sqrt;
+use crate::status::{Error, Result};
+
+/// P_paired = (P_original + P_inverted)/2 (Eq. pair): one estimate that costs two simulations.
+///
+/// # Errors
+/// `Length` for arrays of different lengths, `NotFinite`, `Range` if an average overflows.
+pub fn pair_average(out: &mut [f64], original: &[f64], inverted: &[f64]) -> Result<()> {
+    same_length(out.len(), &[original.len(), inverted.len()])?;
+    finite(original)?;
+    finite(inverted)?;
+    fill(out, |i| super::check::result(0.5 * original[i] + 0.5 * inverted[i]))
+}
+
+/// The relative error of a standard deviation of so many estimates, 1/sqrt(2 (N - 1)) (Eq. errerr; Lehmann & Casella 1998).
+///
+/// # Errors
+/// `Samples` for fewer than two.
+pub fn relative_error_of_deviation(estimates: u64) -> Result<f64> {
+    if estimates < 2 { Err(Error::Samples) } else { Ok(1.0 / sqrt(2.0 * (estimates - 1) as f64)) }
+}
+
+/// The scatter per simulation, sqrt(m) times the standard deviation of estimates of m simulations each (Eq. sigma_paired for m = 2), and its error
+/// by Eq. errerr.
+///
+/// `estimates` counts independent ones: of 41 pairs 41, not 82.
+///
+/// # Errors
+/// `Length` for arrays of different lengths, `Samples` for fewer than two estimates, `NotFinite`, `Range` for negative deviations, no
+/// simulations, or a result that overflows.
+pub fn sigma_per_simulation(
+    sigma: &mut [f64],
+    error: &mut [f64],
+    deviation: &[f64],
+    estimates: u64,
+    simulations: u64,
+) -> Result<()> {
+    same_length(sigma.len(), &[error.len(), deviation.len()])?;
+    let relative = relative_error_of_deviation(estimates)?;
+    not_negative(deviation)?;
+    if simulations == 0 {
+        return Err(Error::Range);
+    }
+    let root = sqrt(simulations as f64);
+    fill_two(sigma, error, |i| {
+        let sigma = super::check::result(root * deviation[i])?;
+        Ok([sigma, relative * sigma])
+    })
+}

@@ -1,0 +1,358 @@
+//! The likelihood on a grid: range, marginals, and what is read off them.
+//!
+//! Priors are flat in the free parameters, with b_g > 0. A grid has uniform steps, ends included; of two free parameters the second is
+//! fastest. Integrals are trapezoidal sums, which for a density that has vanished at both ends converge faster than any power of the step.
+
+use super::bias::Bias;
+use super::check::{finite, result, same_length};
+use super::fit::{BiasFit, Free, bias_fit};
+use super::likelihood::BiasLikelihood;
+use crate::math::sqrt;
+use crate::scratch::{Arena, Layout};
+use crate::status::{Error, Result};
+
+/// chi^2 above the least at which a range ends: a density of exp(-12.5).
+const REACH: f64 = 25.0;
+/// Places on an edge or side that are tried to find where it is reached.
+const PLACES: usize = 65;
+/// How often a range may grow, by a quarter each time.
+const GROWTHS: usize = 100;
+
+/// Uniform grids of one or two parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// First and last value of each parameter, in the order b_g, p, f_NL of those that are free.
+    pub range: [[f64; 2]; 2],
+    /// Values of each; 1 for the second where one is free.
+    pub points: [usize; 2],
+}
+
+impl Grid {
+    fn check(&self, free: &Free) -> Result<usize> {
+        let count = free.numbers().len();
+        for axis in 0..count {
+            let [low, high] = self.range[axis];
+            finite(&[low, high])?;
+            if high <= low || self.points[axis] < 2 {
+                return Err(Error::Range);
+            }
+        }
+        if count == 1 && self.points[1] != 1 {
+            return Err(Error::Range);
+        }
+        self.points[0].checked_mul(self.points[1]).ok_or(Error::Overflow)
+    }
+
+    #[inline]
+    fn value(&self, axis: usize, i: usize) -> f64 {
+        at(self.range[axis], self.points[axis], i)
+    }
+}
+
+/// The i-th of so many values from the first to the last.
+#[inline]
+fn at([low, high]: [f64; 2], points: usize, i: usize) -> f64 {
+    if points == 1 { low } else { low + (high - low) * (i as f64 / (points - 1) as f64) }
+}
+
+/// Where the free parameters' posterior is: a range of each, in the order b_g, p, f_NL, beyond which the density is below exp(-12.5) of its peak.
+///
+/// # Errors
+/// As [`bias_fit`]; `Length` unless there is a range for each free parameter; `Convergence` if the posterior does not end anywhere, as that of f_NL where b_g = p cannot be
+/// excluded.
+pub fn bias_range(
+    ranges: &mut [[f64; 2]],
+    likelihood: &BiasLikelihood,
+    fixed: &Bias,
+    free: u32,
+) -> Result<()> {
+    let fit = bias_fit(likelihood, fixed, free)?;
+    let free = Free::new(free)?;
+    same_length(free.numbers().len(), &[ranges.len()])?;
+    let (found, _) = range(likelihood, &fit, &free)?;
+    ranges.copy_from_slice(&found[..ranges.len()]);
+    Ok(())
+}
+
+/// The range, and the least chi^2 that was seen.
+fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f64; 2]; 2], f64)> {
+    let count = free.numbers().len();
+    let centre = free.of(&fit.value);
+    let lowest = |axis: usize| if free.numbers()[axis] == 0 { 0.0 } else { f64::NEG_INFINITY };
+    let mut range = [[0.0; 2]; 2];
+    for axis in 0..count {
+        let error = fit.error[free.numbers()[axis]];
+        range[axis] = [(centre[axis] - 5.0 * error).max(lowest(axis)), centre[axis] + 5.0 * error];
+    }
+    let mut least = fit.chi_squared;
+    let places = if count == 2 { PLACES } else { 1 };
+    let chi_squared = |range: &[[f64; 2]; 2], axis: usize, value: f64, place: usize| {
+        let mut values = [value; 2];
+        values[1 - axis] = at(range[1 - axis], places, place);
+        likelihood.at(&free.with(&fit.value, values))
+    };
+    // Edges move out until the density has vanished on all of them.
+    for growth in 0.. {
+        let mut grown = false;
+        for axis in 0..count {
+            for end in 0..2 {
+                let edge = range[axis][end];
+                let lowest_there =
+                    (0..places).map(|i| chi_squared(&range, axis, edge, i)).fold(f64::INFINITY, f64::min);
+                least = least.min(lowest_there);
+                if lowest_there < least + REACH && edge > lowest(axis) {
+                    let step = 0.25 * (range[axis][1] - range[axis][0]);
+                    range[axis][end] = if end == 0 { (edge - step).max(lowest(axis)) } else { edge + step };
+                    grown = true;
+                }
+            }
+        }
+        if !grown {
+            break;
+        }
+        if growth == GROWTHS {
+            return Err(Error::Convergence);
+        }
+    }
+    // Then in, to where it has just vanished.
+    for _ in 0..2 {
+        let before = range;
+        for axis in 0..count {
+            let inside = |i: usize| {
+                let value = at(before[axis], PLACES, i);
+                (0..places).any(|place| chi_squared(&before, axis, value, place) < least + REACH)
+            };
+            let first = (0..PLACES).find(|&i| inside(i)).unwrap_or(0);
+            let last = (0..PLACES).rev().find(|&i| inside(i)).unwrap_or(PLACES - 1);
+            let ends = [first.saturating_sub(1), (last + 1).min(PLACES - 1)];
+            range[axis] = ends.map(|i| at(before[axis], PLACES, i));
+        }
+    }
+    finite(range.as_flattened()).map_err(|_| Error::Convergence)?;
+    Ok((range, least))
+}
+
+/// chi^2 on a grid (Eq. chi2), whose marginals and contours the functions below make.
+///
+/// `fixed`: the parameters that are not free.
+///
+/// # Errors
+/// `Choice` for a set of parameters that [`bias_fit`] does not take, `Length` unless there is a place for each point, `NotFinite`, `Range` for a range that is empty, fewer than two points, or a
+/// chi^2 that overflows.
+pub fn bias_grid(
+    out: &mut [f64],
+    likelihood: &BiasLikelihood,
+    fixed: &Bias,
+    free: u32,
+    grid: &Grid,
+) -> Result<()> {
+    let free = Free::new(free)?;
+    likelihood.check()?;
+    fixed.check()?;
+    same_length(grid.check(&free)?, &[out.len()])?;
+    super::check::fill(out, |point| {
+        let values = [grid.value(0, point / grid.points[1]), grid.value(1, point % grid.points[1])];
+        result(likelihood.at(&free.with(fixed, values)))
+    })
+}
+
+/// The posterior density of one parameter of a grid of chi^2, integrated over the other and normalised.
+///
+/// `axis`: 0 or 1; `range`: of that parameter, in whose inverse unit the density is.
+///
+/// # Errors
+/// `Length` for arrays that do not fit, `NotFinite`, `Range` for an axis of one point, or an empty range.
+pub fn marginal(
+    out: &mut [f64],
+    chi_squared: &[f64],
+    points: [usize; 2],
+    axis: usize,
+    range: [f64; 2],
+) -> Result<()> {
+    same_length(points[0].checked_mul(points[1]).ok_or(Error::Overflow)?, &[chi_squared.len()])?;
+    finite(chi_squared)?;
+    finite(&range)?;
+    if axis > 1 || points[axis] < 2 || range[1] <= range[0] {
+        return Err(Error::Range);
+    }
+    same_length(points[axis], &[out.len()])?;
+    let least = chi_squared.iter().copied().fold(f64::INFINITY, f64::min);
+    let other = points[1 - axis];
+    for (i, out) in out.iter_mut().enumerate() {
+        let point = |j: usize| if axis == 0 { i * points[1] + j } else { j * points[1] + i };
+        *out =
+            (0..other).map(|j| end_weight(j, other) * libm::exp(0.5 * (least - chi_squared[point(j)]))).sum();
+    }
+    normalise(out, range)
+}
+
+/// Of the trapezoidal sum.
+fn end_weight(i: usize, points: usize) -> f64 {
+    if points > 1 && (i == 0 || i == points - 1) { 0.5 } else { 1.0 }
+}
+
+fn normalise(density: &mut [f64], range: [f64; 2]) -> Result<()> {
+    let points = density.len();
+    let step = (range[1] - range[0]) / (points - 1) as f64;
+    let sum: f64 = density.iter().enumerate().map(|(i, x)| end_weight(i, points) * x).sum();
+    let factor = 1.0 / (sum * step);
+    if !(factor.is_finite() && factor > 0.0) {
+        return Err(Error::Range);
+    }
+    density.iter_mut().for_each(|x| *x *= factor);
+    Ok(())
+}
+
+/// What one reads off the posterior of a parameter.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C)]
+pub struct Posterior {
+    /// Where the density is largest: the paper's estimate of f_NL.
+    pub peak: f64,
+    /// Its mean.
+    pub mean: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
+    /// Below this value lies half of what the central region leaves out, and above `high` the other half.
+    pub low: f64,
+    /// See `low`.
+    pub high: f64,
+    /// (low + high)/2: with `half_width` the paper's "centre +- semi-width".
+    pub centre: f64,
+    /// (high - low)/2.
+    pub half_width: f64,
+    /// The larger density at the two ends over that of the peak. If it is not small, the range cuts the posterior off.
+    pub edge: f64,
+}
+
+/// Peak (of a parabola through the logarithm of three points), mean, deviation, and the central region of the given probability, 0.68 in the paper, of a density on a
+/// uniform grid.
+///
+/// # Errors
+/// `Length` for fewer than three points, `NotFinite`, `Range` for an empty range, negative densities, none above zero, or a probability outside (0, 1).
+pub fn posterior(density: &[f64], range: [f64; 2], probability: f64) -> Result<Posterior> {
+    finite(density)?;
+    finite(&[range[0], range[1], probability])?;
+    let points = density.len();
+    if points < 3 {
+        return Err(Error::Length);
+    }
+    let sum: f64 = density.iter().enumerate().map(|(i, x)| end_weight(i, points) * x).sum();
+    let sound = density.iter().all(|&x| x >= 0.0) && sum > 0.0 && sum.is_finite();
+    if !sound || range[1] <= range[0] || !(probability > 0.0 && probability < 1.0) {
+        return Err(Error::Range);
+    }
+    let value = |i: f64| range[0] + (range[1] - range[0]) * (i / (points - 1) as f64);
+    let moment = |of: &dyn Fn(f64) -> f64| -> f64 {
+        density.iter().enumerate().map(|(i, x)| end_weight(i, points) * x / sum * of(value(i as f64))).sum()
+    };
+    let mean = moment(&|x| x);
+    let deviation = sqrt(moment(&|x| (x - mean) * (x - mean)));
+    let tail = 0.5 * (1.0 - probability);
+    let [low, high] = [tail, 1.0 - tail].map(|below| value(quantile(density, below * sum)));
+    let top = (0..points).fold(0, |top, i| if density[i] > density[top] { i } else { top });
+    Ok(Posterior {
+        peak: value(peak(density, top)),
+        mean,
+        deviation,
+        low,
+        high,
+        centre: 0.5 * (low + high),
+        half_width: 0.5 * (high - low),
+        edge: density[0].max(density[points - 1]) / density[top],
+    })
+}
+
+/// The place of the maximum about point `top`, between points.
+fn peak(density: &[f64], top: usize) -> f64 {
+    if top == 0 || top == density.len() - 1 {
+        return top as f64;
+    }
+    let [left, centre, right] = [density[top - 1], density[top], density[top + 1]].map(libm::log);
+    let bend = (centre - left) + (centre - right);
+    // Neighbours of zero density have no logarithm.
+    let shift = 0.5 * (right - left) / bend;
+    if shift.is_finite() { top as f64 + shift.clamp(-0.5, 0.5) } else { top as f64 }
+}
+
+/// The place, in points, below which the sum of the density, linear between points, is `wanted`.
+fn quantile(density: &[f64], wanted: f64) -> f64 {
+    let mut below = 0.0;
+    for (i, pair) in density.windows(2).enumerate() {
+        let inside = 0.5 * (pair[0] + pair[1]);
+        if below + inside >= wanted && inside > 0.0 {
+            // pair[0] t + (pair[1] - pair[0]) t^2/2 = rest, in the form that holds for equal densities too.
+            let rest = wanted - below;
+            let slope = pair[1] - pair[0];
+            let root = sqrt((pair[0] * pair[0] + 2.0 * slope * rest).max(0.0));
+            return i as f64 + (2.0 * rest / (pair[0] + root)).clamp(0.0, 1.0);
+        }
+        below += inside;
+    }
+    (density.len() - 1) as f64
+}
+
+/// All of it in one call: the fit, the range, and the posterior of each free parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constraints {
+    /// The best parameters.
+    pub fit: BiasFit,
+    /// The grid that was integrated.
+    pub grid: Grid,
+    /// Of the free parameters in the order b_g, p, f_NL; the second is all zeros where one is free.
+    pub posterior: [Posterior; 2],
+}
+
+/// Least and most points of a grid of [`bias_posterior`].
+pub const POINTS: core::ops::RangeInclusive<usize> = 16..=8192;
+
+/// Work space of [`bias_posterior`]: 16 bytes a point.
+///
+/// # Errors
+/// `Range` for points outside [`POINTS`].
+pub fn bias_posterior_scratch(points: usize) -> Result<Layout> {
+    if !POINTS.contains(&points) {
+        return Err(Error::Range);
+    }
+    Layout::EMPTY.and::<f64>(points)?.and::<f64>(points)
+}
+
+/// Fit, automatic range, and posteriors on a grid of `points` values of each free parameter, 128 for three digits and more.
+///
+/// `start`: the parameters that are not free, and where the fit of the others may begin. The peak of the posterior of f_NL is the paper's estimate.
+/// Cost: 30 ns a point of the grid.
+///
+/// # Errors
+/// As [`bias_range`] and [`posterior`]; `Range` for points outside [`POINTS`], `Scratch`.
+pub fn bias_posterior(
+    likelihood: &BiasLikelihood,
+    start: &Bias,
+    free: u32,
+    points: usize,
+    probability: f64,
+    scratch: &mut [u8],
+) -> Result<Constraints> {
+    let mut arena = Arena::new(scratch, bias_posterior_scratch(points)?)?;
+    let fit = bias_fit(likelihood, start, free)?;
+    let free = Free::new(free)?;
+    let (range, least) = range(likelihood, &fit, &free)?;
+    let count = free.numbers().len();
+    let grid = Grid { range, points: [points, if count == 2 { points } else { 1 }] };
+    let (first, second) = (arena.take::<f64>(points)?, arena.take::<f64>(points)?);
+    first.fill(0.0);
+    second.fill(0.0);
+    for (i, first) in first.iter_mut().enumerate() {
+        for (j, second) in second[..grid.points[1]].iter_mut().enumerate() {
+            let at = free.with(&fit.value, [grid.value(0, i), grid.value(1, j)]);
+            let density = libm::exp(0.5 * (least - likelihood.at(&at)).min(0.0));
+            *first += end_weight(j, grid.points[1]) * density;
+            *second += end_weight(i, points) * density;
+        }
+    }
+    let mut read = [Posterior::default(); 2];
+    for (axis, density) in [first, second].into_iter().enumerate().take(count) {
+        normalise(density, range[axis])?;
+        read[axis] = posterior(density, range[axis], probability)?;
+    }
+    Ok(Constraints { fit, grid, posterior: read })
+}

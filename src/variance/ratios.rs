@@ -1,0 +1,81 @@
+//! Are two kinds of simulations the same on average? Ratios of their means, and differences in units of a scatter.
+
+use super::check::{fill_two, finite, not_negative, positive, result, same_length};
+use crate::math::sqrt;
+use crate::status::{Error, Result};
+
+/// Means over an ensemble, bin by bin, with their errors.
+#[derive(Clone, Copy, Debug)]
+pub struct Means<'a> {
+    /// Mean of each bin.
+    pub mean: &'a [f64],
+    /// Its standard error.
+    pub error: &'a [f64],
+}
+
+impl Means<'_> {
+    fn check(&self, len: usize) -> Result<()> {
+        same_length(len, &[self.mean.len(), self.error.len()])?;
+        finite(self.mean)?;
+        not_negative(self.error)
+    }
+}
+
+/// Correlation of two means: of simulations that share their seeds, that of their values. None are independent.
+fn check_correlation(correlation: Option<&[f64]>, len: usize) -> Result<()> {
+    let Some(rho) = correlation else { return Ok(()) };
+    same_length(len, &[rho.len()])?;
+    finite(rho)?;
+    if rho.iter().all(|rho| rho.abs() <= 1.0) { Ok(()) } else { Err(Error::Range) }
+}
+
+/// a/b, Fixed over Normal, and its error |a/b| sqrt(r_a^2 + r_b^2 - 2 rho r_a r_b) with the relative errors r.
+///
+/// # Errors
+/// `Length` for arrays of different lengths, `NotFinite`, `Range` for b = 0, negative errors, |rho| > 1, or a result that overflows.
+pub fn ratio_of_means(
+    ratio: &mut [f64],
+    error: &mut [f64],
+    above: Means<'_>,
+    below: Means<'_>,
+    correlation: Option<&[f64]>,
+) -> Result<()> {
+    let len = ratio.len();
+    above.check(len)?;
+    below.check(len)?;
+    check_correlation(correlation, len)?;
+    fill_two(ratio, error, |i| {
+        let ratio = result(above.mean[i] / below.mean[i])?;
+        // Written so that a = 0 has an error too.
+        let (first, second) = (above.error[i] / below.mean[i], ratio * (below.error[i] / below.mean[i]));
+        let rho = correlation.map_or(0.0, |rho| rho[i]);
+        let square = first * first + second * second - 2.0 * rho * first * second;
+        Ok([ratio, result(sqrt(square.max(0.0)))?])
+    })
+}
+
+/// (a - b)/sigma, as (B_Fixed - B_Normal)/sigma_Normal, and its error.
+///
+/// # Errors
+/// As [`ratio_of_means`]; `Range` for sigma that is not positive.
+pub fn difference_of_means(
+    difference: &mut [f64],
+    error: &mut [f64],
+    first: Means<'_>,
+    second: Means<'_>,
+    correlation: Option<&[f64]>,
+    sigma: &[f64],
+) -> Result<()> {
+    let len = difference.len();
+    first.check(len)?;
+    second.check(len)?;
+    check_correlation(correlation, len)?;
+    same_length(len, &[sigma.len()])?;
+    positive(sigma)?;
+    fill_two(difference, error, |i| {
+        let (a, b) = (first.error[i] / sigma[i], second.error[i] / sigma[i]);
+        let rho = correlation.map_or(0.0, |rho| rho[i]);
+        let square = a * a + b * b - 2.0 * rho * a * b;
+        Ok([result((first.mean[i] - second.mean[i]) / sigma[i])?, result(sqrt(square.max(0.0)))?])
+    })
+}

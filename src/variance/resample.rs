@@ -1,0 +1,140 @@
+//! Jackknife and bootstrap: errors of any statistic of an ensemble, without a model of its distribution.
+//!
+//! The caller computes the statistic; these kernels say of what. Samples are rows of a table, one estimate each: resampling rows keeps matched
+//! statistics matched, and a pair is one row.
+
+use super::check::{fill, fill_two, finite, same_length, table};
+use crate::math::sqrt;
+use crate::noise::philox::{key_of, philox4x32_10};
+use crate::status::{Error, Result};
+
+/// The fourth counter word: this use of the generator. Random modes of one seed take another.
+const DOMAIN: u32 = u32::from_be_bytes(*b"boot");
+
+/// Which estimates make up replicate number `replicate`: as many draws with replacement as `indices` has places, each of `0..estimates`.
+///
+/// The draws are a function of seed, replicate and place alone (Philox4x32-10), so replicates may be made in any order and on any process, and the
+/// same replicate of matched ensembles draws the same seeds. An estimate is drawn with its probability to 1 part in 2^64/estimates.
+///
+/// # Errors
+/// `Samples` for no estimates, `Overflow` for more than 2^33 draws.
+pub fn bootstrap_indices(indices: &mut [u64], estimates: u64, seed: u64, replicate: u64) -> Result<()> {
+    if estimates == 0 {
+        return Err(Error::Samples);
+    }
+    if indices.len() as u64 > 1 << 33 {
+        return Err(Error::Overflow);
+    }
+    let key = key_of(seed);
+    for (block, indices) in indices.chunks_mut(2).enumerate() {
+        let words = philox4x32_10([block as u32, replicate as u32, (replicate >> 32) as u32, DOMAIN], key);
+        let uniform = |i: usize| u128::from(words[2 * i]) | u128::from(words[2 * i + 1]) << 32;
+        for (i, index) in indices.iter_mut().enumerate() {
+            *index = ((uniform(i) * u128::from(estimates)) >> 64) as u64;
+        }
+    }
+    Ok(())
+}
+
+/// The mean of the rows of `samples` that `indices` name, out.len() values a row.
+///
+/// # Errors
+/// `Length` if the samples are not whole rows, `Samples` without indices, `Range` for an index of no row, `NotFinite`.
+pub fn resampled_mean(out: &mut [f64], samples: &[f64], indices: &[u64]) -> Result<()> {
+    let values = out.len();
+    let rows = rows_of(samples, values)?;
+    finite(samples)?;
+    if indices.is_empty() {
+        return Err(Error::Samples);
+    }
+    if indices.iter().any(|&index| index >= rows as u64) {
+        return Err(Error::Range);
+    }
+    fill(out, |i| {
+        let sum: f64 = indices.iter().map(|&index| samples[index as usize * values + i]).sum();
+        super::check::result(sum / indices.len() as f64)
+    })
+}
+
+fn rows_of(samples: &[f64], values: usize) -> Result<usize> {
+    if values == 0 || !samples.len().is_multiple_of(values) {
+        return Err(Error::Length);
+    }
+    Ok(samples.len() / values)
+}
+
+/// The mean of all rows but one, for each row: what a statistic of the mean is computed from by the jackknife.
+///
+/// # Errors
+/// `Length` unless both tables are the same whole rows of `values`, `Samples` for fewer than two rows, `NotFinite`, `Range` if a sum overflows.
+pub fn jackknife_means(out: &mut [f64], samples: &[f64], values: usize) -> Result<()> {
+    same_length(out.len(), &[samples.len()])?;
+    let rows = rows_of(samples, values)?;
+    finite(samples)?;
+    if rows < 2 {
+        return Err(Error::Samples);
+    }
+    let total = |column: usize| samples.iter().skip(column).step_by(values).sum::<f64>();
+    for column in 0..values {
+        super::check::result(total(column))?;
+    }
+    for column in 0..values {
+        let total = total(column);
+        for at in (column..samples.len()).step_by(values) {
+            out[at] = (total - samples[at]) / (rows - 1) as f64;
+        }
+    }
+    Ok(())
+}
+
+/// What the jackknife makes of statistics without one row each: N whole - (N - 1) <deleted>, whose bias of order 1/N is gone, and the error
+/// sqrt((N - 1)/N sum (deleted - <deleted>)^2) (Quenouille 1956, Tukey 1958).
+///
+/// `whole`: the statistic of all rows; `deleted`: one row of values for each row that was left out.
+///
+/// # Errors
+/// `Length` for arrays that do not fit, `Samples` for fewer than two rows, `NotFinite`, `Range` if a result overflows.
+pub fn jackknife(corrected: &mut [f64], error: &mut [f64], whole: &[f64], deleted: &[f64]) -> Result<()> {
+    let values = whole.len();
+    same_length(values, &[corrected.len(), error.len()])?;
+    let rows = rows_of(deleted, values)?;
+    finite(whole)?;
+    finite(deleted)?;
+    if rows < 2 {
+        return Err(Error::Samples);
+    }
+    let count = rows as f64;
+    fill_two(corrected, error, |i| {
+        let column = || deleted.iter().skip(i).step_by(values);
+        let mean = column().sum::<f64>() / count;
+        let square: f64 = column().map(|x| (x - mean) * (x - mean)).sum();
+        let corrected = super::check::result(count * whole[i] - (count - 1.0) * mean)?;
+        Ok([corrected, super::check::result(sqrt((count - 1.0) / count * square))?])
+    })
+}
+
+/// Their covariance: values x values numbers, (N - 1)/N sum of products about the mean.
+///
+/// # Errors
+/// As [`jackknife`].
+pub fn jackknife_covariance(
+    covariance: &mut [f64],
+    deleted: &[f64],
+    rows: usize,
+    values: usize,
+) -> Result<()> {
+    table(deleted, rows, values)?;
+    same_length(values.checked_mul(values).ok_or(Error::Overflow)?, &[covariance.len()])?;
+    if rows < 2 {
+        return Err(Error::Samples);
+    }
+    let count = rows as f64;
+    let column = |i: usize| deleted.iter().skip(i).step_by(values);
+    let mean = |i: usize| column(i).sum::<f64>() / count;
+    fill(covariance, |at| {
+        let (i, j) = (at / values, at % values);
+        let (mean_i, mean_j) = (mean(i), mean(j));
+        let sum: f64 = column(i).zip(column(j)).map(|(x, y)| (x - mean_i) * (y - mean_j)).sum();
+        super::check::result((count - 1.0) / count * sum)
+    })
+}

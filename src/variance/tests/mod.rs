@@ -1,0 +1,3 @@
+//! Claims about the statistics, by subject.
+
+mod acceptance;
