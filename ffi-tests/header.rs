@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 27] = [
+const SECTIONS: [(&str, &str); 34] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -31,10 +31,17 @@ const SECTIONS: [(&str, &str); 27] = [
     ("bispectrum_sums", "Bispectrum with the host's own transform"),
     ("bispectrum", "Bispectrum"),
     ("bispectrum_values", "From sums to bispectra"),
+    ("ensemble", "Ensembles and pairs"),
+    ("resample", "Jackknife and bootstrap"),
+    ("scatter", "Models of scatter"),
+    ("bias", "Bias and its likelihood"),
+    ("posterior", "Fits and posteriors"),
+    ("matched", "Matched simulations"),
+    ("covariance", "Covariance matrices"),
 ];
 
 /// Files without functions that define structs of the interface.
-const STRUCTS: [&str; 9] = [
+const STRUCTS: [&str; 17] = [
     "src/capi/run.rs",
     "src/scratch.rs",
     "src/cosmology/growth.rs",
@@ -44,6 +51,14 @@ const STRUCTS: [&str; 9] = [
     "src/halos/catalogue.rs",
     "src/halos/spheres.rs",
     "src/estimate/binning.rs",
+    "src/variance/models.rs",
+    "src/variance/suppression.rs",
+    "src/variance/bias.rs",
+    "src/variance/likelihood.rs",
+    "src/variance/fit.rs",
+    "src/variance/posterior.rs",
+    "src/variance/matched.rs",
+    "src/variance/control.rs",
 ];
 
 const PREAMBLE: &str = include_str!("header_preamble.h");
@@ -76,10 +91,19 @@ fn generate() -> String {
         ("Halo", "fixpair_halo"),
         ("Sphere", "fixpair_sphere"),
         ("Bin", "fixpair_bin"),
+        ("Suppression", "fixpair_suppression"),
+        ("SuppressionFit", "fixpair_suppression_fit"),
+        ("Bias", "fixpair_bias"),
+        ("BiasLikelihood", "fixpair_bias_likelihood"),
+        ("BiasFit", "fixpair_bias_fit"),
+        ("Posterior", "fixpair_posterior"),
+        ("MatchedDifference", "fixpair_difference"),
+        ("ControlVariate", "fixpair_control_variate"),
     ] {
         config.export.rename.insert(rust.into(), c.into());
     }
     config.defines.insert("feature = std".into(), "FIXPAIR_THREADS".into());
+    config.defines.insert("feature = linalg".into(), "FIXPAIR_LINALG".into());
     config.export.exclude.extend([
         "EARLIEST_GROWTH".into(),
         "COLA_EXPONENT".into(),
@@ -87,6 +111,10 @@ fn generate() -> String {
         "ALIGN".into(),
         "HIGHEST_ORDER".into(),
         "LEAST_OVERDENSITY".into(),
+        "DELTA_C".into(),
+        "FREE_B_G".into(),
+        "FREE_P".into(),
+        "FREE_F_NL".into(),
     ]);
     let mut builder = cbindgen::Builder::new().with_config(config);
     for file in STRUCTS {
@@ -141,6 +169,7 @@ fn polish(header: &str) -> String {
         }
         let line =
             line.replace("/**", "/*").replace("defined(FIXPAIR_THREADS)", "!defined(FIXPAIR_NO_THREADS)");
+        let line = line.replace("defined(FIXPAIR_LINALG)", "!defined(FIXPAIR_NO_LINALG)");
         let negative = line.strip_prefix("#define ").and_then(|rest| rest.split_once(" -"));
         lines.push(negative.map_or(line.clone(), |(name, digits)| format!("#define {name} (-{digits})")));
         if text == "*/" && lines.len() == comment + 3 {

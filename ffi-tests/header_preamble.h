@@ -8,8 +8,9 @@
  *
  * Rules that hold for every function:
  *
- *  1. Memory is yours. Nothing is allocated or freed (fixpair_threads_create alone starts threads and takes memory for them), and nothing
- *     is kept but by a hook of fixpair_fft_init, which goes on using its tables and scratch.
+ *  1. Memory is yours. Nothing is allocated or freed (fixpair_threads_create alone starts threads and takes memory for them; inside
+ *     fixpair_covariance_root and fixpair_carpool faer may take some for the length of a call), and nothing is kept but by a hook of
+ *     fixpair_fft_init, which goes on using its tables and scratch.
  *     Functions that need scratch have a twin ..._scratch, which says how many bytes, aligned how; contents do not
  *     matter before and mean nothing after. Scratch and tables are aligned to 64 bytes (aligned_alloc, posix_memalign).
  *     One piece of scratch of the largest size may serve all calls, one after the other.

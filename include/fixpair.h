@@ -8,8 +8,9 @@
  *
  * Rules that hold for every function:
  *
- *  1. Memory is yours. Nothing is allocated or freed (fixpair_threads_create alone starts threads and takes memory for them), and nothing
- *     is kept but by a hook of fixpair_fft_init, which goes on using its tables and scratch.
+ *  1. Memory is yours. Nothing is allocated or freed (fixpair_threads_create alone starts threads and takes memory for them; inside
+ *     fixpair_covariance_root and fixpair_carpool faer may take some for the length of a call), and nothing is kept but by a hook of
+ *     fixpair_fft_init, which goes on using its tables and scratch.
  *     Functions that need scratch have a twin ..._scratch, which says how many bytes, aligned how; contents do not
  *     matter before and mean nothing after. Scratch and tables are aligned to 64 bytes (aligned_alloc, posix_memalign).
  *     One piece of scratch of the largest size may serve all calls, one after the other.
@@ -98,6 +99,12 @@
 
 /* The host's observer asked a run to stop; it can go on. */
 #define FIXPAIR_ERROR_STOPPED (-18)
+
+/* There are fewer independent estimates than the statistic needs. */
+#define FIXPAIR_ERROR_SAMPLES (-19)
+
+/* A matrix is singular or not positive definite, or the data say nothing about a parameter. */
+#define FIXPAIR_ERROR_SINGULAR (-20)
 
 /* Real cells. */
 #define FIXPAIR_SPACE_CONFIGURATION 0
@@ -248,6 +255,33 @@
  * MPI_SUM makes those of the whole mesh of them, bit for bit.
  */
 #define FIXPAIR_BISPECTRUM_WORDS 42
+
+/* Mean and variance of each value. */
+#define FIXPAIR_MOMENTS_VARIANCE 0
+
+/* Mean of each value, covariance of all pairs. */
+#define FIXPAIR_MOMENTS_COVARIANCE 1
+
+/* P_hh = b^2 P_lin. */
+#define FIXPAIR_SPECTRUM_HALO_HALO 0
+
+/* P_hm = b P_lin. */
+#define FIXPAIR_SPECTRUM_HALO_MATTER 1
+
+/* b_g is free. */
+#define FIXPAIR_FREE_B_G 1
+
+/* p is free. */
+#define FIXPAIR_FREE_P 2
+
+/* f_NL is free. */
+#define FIXPAIR_FREE_F_NL 4
+
+/* beta is a number of the caller's: 1 for a plain difference. */
+#define FIXPAIR_BETA_GIVEN 0
+
+/* beta of least scatter, from the samples themselves. */
+#define FIXPAIR_BETA_OPTIMAL 1
 
 #if !defined(FIXPAIR_NO_THREADS)
 /* The built-in pool of threads; opaque. */
@@ -820,6 +854,122 @@ typedef struct fixpair_bin {
   /* Their mean mu, or mean |n.a|; 0 without a second coordinate. */
   double second;
 } fixpair_bin;
+
+/* What fixing, or fixing and pairing, leaves of the scatter (Eq. sigma_fix). */
+typedef struct fixpair_suppression {
+  /* R_cv: cosmic variance that is left at small k, over that of a Gaussian field. */
+  double cosmic_variance;
+  /* k_soft, h/Mpc: where it comes back. */
+  double softening;
+  /* f_sn: shot noise over that of Poisson points. */
+  double shot_noise;
+} fixpair_suppression;
+
+/* Least-squares values with their errors. */
+typedef struct fixpair_suppression_fit {
+  /* The best values. */
+  struct fixpair_suppression value;
+  /* Their standard errors. */
+  struct fixpair_suppression error;
+  /* Covariance of (R_cv, k_soft, f_sn), row by row. */
+  double covariance[9];
+  /* Sum of ((sigma - sigma_r)/error)^2. */
+  double chi_squared;
+  /* Bins less parameters. */
+  uint64_t degrees;
+} fixpair_suppression_fit;
+
+/* The parameters of Eq. bk. */
+typedef struct fixpair_bias {
+  /* b_g: bias of a Gaussian universe. */
+  double b_g;
+  /* p: 1 for universality. */
+  double p;
+  /* f_NL, in the convention of alpha. */
+  double f_nl;
+  /* delta_c: 1.686. */
+  double delta_c;
+} fixpair_bias;
+
+/* All that measured spectra say of b_g, p and f_NL. Begins empty; spectra that are independent are added, of P_hh, P_hm or both. */
+typedef struct fixpair_bias_likelihood {
+  /* Values that were added. */
+  uint64_t bins;
+  /* R of chi^2 = |R c|^2 with c = (b_g^2, 2 b_g x, x^2, b_g, x, -1) and x = 2 delta_c (b_g - p) f_NL; upper triangular. */
+  double root[6][6];
+} fixpair_bias_likelihood;
+
+/* The best parameters, their errors and their covariance. */
+typedef struct fixpair_bias_fit {
+  /* Where chi^2 is least. */
+  struct fixpair_bias value;
+  /* Standard errors of (b_g, p, f_NL), from the curvature there; 0 for those that are not free. */
+  double error[3];
+  /* Covariance of (b_g, p, f_NL), row by row. */
+  double covariance[9];
+  /* Least chi^2. */
+  double chi_squared;
+  /* Bins less free parameters; 0 if there are not as many. */
+  uint64_t degrees;
+} fixpair_bias_fit;
+
+/* What one reads off the posterior of a parameter. */
+typedef struct fixpair_posterior {
+  /* Where the density is largest: the paper's estimate of f_NL. */
+  double peak;
+  /* Its mean. */
+  double mean;
+  /* Its standard deviation. */
+  double deviation;
+  /* Below this value lies half of what the central region leaves out, and above `high` the other half. */
+  double low;
+  /* See `low`. */
+  double high;
+  /* (low + high)/2: with `half_width` the paper's "centre +- semi-width". */
+  double centre;
+  /* (high - low)/2. */
+  double half_width;
+  /* The larger density at the two ends over that of the peak. If it is not small, the range cuts the posterior off. */
+  double edge;
+} fixpair_posterior;
+
+/* Two lists of estimates, one of each seed, in the same order. */
+typedef struct fixpair_difference {
+  /* Means of both. */
+  double mean_first;
+  /* See `mean_first`. */
+  double mean_second;
+  /* Standard deviations of both, with N - 1. */
+  double deviation_first;
+  /* See `deviation_first`. */
+  double deviation_second;
+  /* Pearson's correlation coefficient rho. */
+  double correlation;
+  /* Its standard error, (1 - rho^2)/sqrt(N - 1). */
+  double correlation_error;
+  /* Mean of first - second (Eq. diff). */
+  double mean;
+  /* Its standard deviation, with N - 1. Of these very deviations and rho Eq. correlation gives this. */
+  double deviation;
+  /* Standard error of the mean, deviation/sqrt(N). */
+  double error_of_mean;
+} fixpair_difference;
+
+/* The expectation of y. */
+typedef struct fixpair_control_variate {
+  /* <y> - beta (<c> - mu). */
+  double mean;
+  /* Its standard error, with the costs of estimating beta and of the error of mu. */
+  double error;
+  /* beta. */
+  double beta;
+  /* Correlation of y and c. */
+  double correlation;
+  /* Scatter of one estimate y - beta (c - mu). */
+  double deviation;
+  /* (error of <y>/error)^2: how many times fewer simulations the same error takes. */
+  double gain;
+} fixpair_control_variate;
 
 #ifdef __cplusplus
 extern "C" {
@@ -3564,6 +3714,960 @@ fixpair_status_t fixpair_bispectrum_reduced(double *out,
                                             size_t triangles_len,
                                             const double *power,
                                             size_t shells);
+
+/*
+ * Ensembles and pairs
+ * ===================
+ */
+
+/*
+ * Doubles in the state of an ensemble: 3 + 2 values with FIXPAIR_MOMENTS_VARIANCE, 3 + values + values (values + 1)/2 with _COVARIANCE.
+ *
+ * The state holds the number of samples so far, their mean, and sums of products about the mean (Welford 1962; Chan, Golub & LeVeque 1979):
+ * no digits are lost where the mean is large. It may be copied, saved, and sent as doubles, and merges with that of another process:
+ *
+ * fixpair_ensemble_length(&length, bins, FIXPAIR_MOMENTS_COVARIANCE);
+ * fixpair_ensemble_init(state, length, bins, FIXPAIR_MOMENTS_COVARIANCE);
+ * for each estimate (a simulation, or the average of a pair: a pair counts once)
+ *     fixpair_ensemble_add(state, length, power, bins);
+ * gather the states of all processes; fixpair_ensemble_merge(state, length, other);
+ * fixpair_ensemble_covariance(covariance, bins, bins, state, length, 0, 0);
+ *
+ * For cross-covariances of several vectors (P at f_NL = 0 and at f_NL = 100 of one seed, P and a cheap surrogate) a sample is all of them, one after another.
+ *
+ * Out: length
+ * In:  values   numbers in a sample, 1 or more
+ *      moments  FIXPAIR_MOMENTS_...
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, FIXPAIR_ERROR_LENGTH for no values, _OVERFLOW, _CHOICE
+ */
+fixpair_status_t fixpair_ensemble_length(size_t *length,
+                                         size_t values,
+                                         int32_t moments);
+
+/*
+ * A state without samples.
+ *
+ * Out: state    state_len doubles, see fixpair_ensemble_length
+ * In:  values, moments
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERFLOW, _CHOICE, FIXPAIR_ERROR_LENGTH for a state of another length or no values
+ */
+fixpair_status_t fixpair_ensemble_init(double *state,
+                                       size_t state_len,
+                                       size_t values,
+                                       int32_t moments);
+
+/*
+ * Adds samples.
+ *
+ * In/Out: state    of fixpair_ensemble_init
+ * In:     samples  samples_len doubles: one sample or several, one after another
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_LENGTH for samples that are not whole, FIXPAIR_ERROR_VERSION for a state that
+ *          fixpair_ensemble_init did not make, FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_RANGE for numbers beyond 1e140
+ * Cost: a multiplication and addition for each sample and number of the state
+ */
+fixpair_status_t fixpair_ensemble_add(double *state,
+                                      size_t state_len,
+                                      const double *samples,
+                                      size_t samples_len);
+
+/*
+ * Adds all samples of another state. In which order states are merged changes results by rounding only.
+ *
+ * In/Out: state  of fixpair_ensemble_init
+ * In:     other  state_len doubles: a state for samples of as many values, with the same moments
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_LENGTH for other samples, FIXPAIR_ERROR_VERSION for what is no state
+ */
+fixpair_status_t fixpair_ensemble_merge(double *state,
+                                        size_t state_len,
+                                        const double *other);
+
+/*
+ * How many samples there are.
+ *
+ * Out: count
+ * In:  state  of fixpair_ensemble_init
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_LENGTH or FIXPAIR_ERROR_VERSION for what is no state
+ */
+fixpair_status_t fixpair_ensemble_count(uint64_t *count,
+                                        const double *state,
+                                        size_t state_len);
+
+/*
+ * Mean of each value.
+ *
+ * Out: mean   values doubles
+ * In:  state  of fixpair_ensemble_init
+ * Returns: as fixpair_ensemble_count; FIXPAIR_ERROR_LENGTH for another number of values, FIXPAIR_ERROR_SAMPLES without samples
+ */
+fixpair_status_t fixpair_ensemble_mean(double *mean,
+                                       size_t values,
+                                       const double *state,
+                                       size_t state_len);
+
+/*
+ * Standard deviation of each value, with N - 1.
+ *
+ * Out: deviation  values doubles
+ * In:  state      of fixpair_ensemble_init
+ * Returns: as fixpair_ensemble_mean; FIXPAIR_ERROR_SAMPLES for fewer than two
+ */
+fixpair_status_t fixpair_ensemble_deviation(double *deviation,
+                                            size_t values,
+                                            const double *state,
+                                            size_t state_len);
+
+/*
+ * Standard error of the mean of each value: the deviation over sqrt(N).
+ *
+ * Out: error  values doubles
+ * In:  state  of fixpair_ensemble_init
+ * Returns: as fixpair_ensemble_deviation
+ */
+fixpair_status_t fixpair_ensemble_error_of_mean(double *error,
+                                                size_t values,
+                                                const double *state,
+                                                size_t state_len);
+
+/*
+ * A block of the covariance, with N - 1: of values first_row, ... with values first_column, ... All of it is (values, values, 0, 0); the
+ * cross-covariance of the first p with the next q is (p, q, 0, p).
+ *
+ * Out: covariance  rows x columns doubles, row by row
+ * In:  state       of fixpair_ensemble_init
+ *      first_row, first_column
+ * Returns: as fixpair_ensemble_deviation; FIXPAIR_ERROR_RANGE for values that samples do not have, FIXPAIR_ERROR_CHOICE for pairs that a state of variances does
+ *          not keep
+ */
+fixpair_status_t fixpair_ensemble_covariance(double *covariance,
+                                             size_t rows,
+                                             size_t columns,
+                                             const double *state,
+                                             size_t state_len,
+                                             size_t first_row,
+                                             size_t first_column);
+
+/*
+ * The same block of correlation coefficients.
+ *
+ * Out: correlation  rows x columns doubles, row by row
+ * In:  state        of fixpair_ensemble_init
+ *      first_row, first_column
+ * Returns: as fixpair_ensemble_covariance; FIXPAIR_ERROR_SINGULAR where a value does not vary
+ */
+fixpair_status_t fixpair_ensemble_correlation(double *correlation,
+                                              size_t rows,
+                                              size_t columns,
+                                              const double *state,
+                                              size_t state_len,
+                                              size_t first_row,
+                                              size_t first_column);
+
+/*
+ * P_paired = (P_original + P_inverted)/2 (Avila & Adame 2022, Eq. pair): one estimate that costs two simulations.
+ *
+ * Out: average             len doubles
+ * In:  original, inverted  len doubles each
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE if an average overflows
+ */
+fixpair_status_t fixpair_pair_average(double *average,
+                                      const double *original,
+                                      const double *inverted,
+                                      size_t len);
+
+/*
+ * Scatter per simulation: sqrt(simulations) times the standard deviation of estimates (Eq. sigma_paired), with its error sigma/sqrt(2 (N - 1)) (Eq. errerr).
+ *
+ * Out: sigma, error  len doubles each
+ * In:  deviation     len standard deviations over estimates, with N - 1
+ *      estimates     N: independent ones; 41 pairs are 41
+ *      simulations   that one estimate costs: 2 for a pair
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_SAMPLES for fewer than two estimates, FIXPAIR_ERROR_RANGE for a negative deviation,
+ *          no simulations, or a result that overflows
+ */
+fixpair_status_t fixpair_sigma_per_simulation(double *sigma,
+                                              double *error,
+                                              const double *deviation,
+                                              size_t len,
+                                              uint64_t estimates,
+                                              uint64_t simulations);
+
+/*
+ * Jackknife and bootstrap
+ * =======================
+ */
+
+/*
+ * Which estimates make up a replicate of a bootstrap: draws with replacement.
+ *
+ * The draws are a function of seed, replicate and place alone (Philox4x32-10): replicates may be made in any order and on any process. The same replicate
+ * of matched ensembles draws the same seeds, so that what they share stays shared.
+ *
+ * for (replicate = 0; replicate < 1000; replicate++) {
+ *     fixpair_bootstrap_indices(indices, n, n, seed, replicate);
+ *     compute the statistic of estimates indices[0], ..., indices[n - 1]; fixpair_resampled_mean does for functions of a mean
+ *     fixpair_ensemble_add(state, state_len, &statistic, 1);
+ * }
+ * fixpair_ensemble_deviation(&error, 1, state, state_len);
+ *
+ * Out: indices    len numbers in 0, ..., estimates - 1; len is that of the ensemble, or fewer
+ * In:  estimates  independent ones: a pair is one
+ *      seed, replicate
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, FIXPAIR_ERROR_SAMPLES for no estimates, FIXPAIR_ERROR_OVERFLOW for more than 2^33 draws
+ */
+fixpair_status_t fixpair_bootstrap_indices(uint64_t *indices,
+                                           size_t len,
+                                           uint64_t estimates,
+                                           uint64_t seed,
+                                           uint64_t replicate);
+
+/*
+ * Mean of the rows that indices name.
+ *
+ * Out: mean     values doubles
+ * In:  samples  rows x values doubles, an estimate a row
+ *      indices  indices_len numbers of rows
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for no values, FIXPAIR_ERROR_SAMPLES for no indices, FIXPAIR_ERROR_RANGE for a
+ *          row that is not there or a sum that overflows
+ */
+fixpair_status_t fixpair_resampled_mean(double *mean,
+                                        size_t values,
+                                        const double *samples,
+                                        size_t rows,
+                                        const uint64_t *indices,
+                                        size_t indices_len);
+
+/*
+ * The mean of all rows but one, for each row: what a statistic of the mean is computed from for fixpair_jackknife.
+ *
+ * Out: means    rows x values doubles
+ * In:  samples  rows x values doubles, an estimate a row
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for no values, FIXPAIR_ERROR_SAMPLES for fewer than two rows, FIXPAIR_ERROR_RANGE if a
+ *          sum overflows
+ */
+fixpair_status_t fixpair_jackknife_means(double *means,
+                                         const double *samples,
+                                         size_t rows,
+                                         size_t values);
+
+/*
+ * The jackknife: N whole - (N - 1) <deleted>, free of the bias of order 1/N, and the error sqrt((N - 1)/N sum (deleted - <deleted>)^2) (Quenouille 1956,
+ * Tukey 1958).
+ *
+ * Out: corrected, error  values doubles each
+ * In:  whole             values statistics of all rows
+ *      deleted           rows x values: the same without row 0, without row 1, ...
+ * Returns: as fixpair_jackknife_means
+ */
+fixpair_status_t fixpair_jackknife(double *corrected,
+                                   double *error,
+                                   const double *whole,
+                                   size_t values,
+                                   const double *deleted,
+                                   size_t rows);
+
+/*
+ * The covariance of its statistics: (N - 1)/N sum of products about their mean.
+ *
+ * Out: covariance  values x values doubles
+ * In:  deleted     rows x values, as for fixpair_jackknife
+ * Returns: as fixpair_jackknife_means
+ */
+fixpair_status_t fixpair_jackknife_covariance(double *covariance,
+                                              const double *deleted,
+                                              size_t rows,
+                                              size_t values);
+
+/*
+ * Models of scatter
+ * =================
+ */
+
+/*
+ * Modes in shells of the continuum, counting k and -k: N_k = L^3 k^2 dk/(2 pi^2). With them fixpair_sigma_gaussian is Eq. sigma_th as printed; exact
+ * numbers are those of fixpair_lattice_modes and fixpair_binning_read.
+ *
+ * Out: modes     len doubles
+ * In:  k         len wavenumbers, h/Mpc
+ *      width     dk, h/Mpc
+ *      box_size  L, Mpc/h
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for numbers that are not positive, or too extreme
+ */
+fixpair_status_t fixpair_continuum_modes(double *modes,
+                                         const double *k,
+                                         size_t len,
+                                         double width,
+                                         double box_size);
+
+/*
+ * The exact number of modes with edges[b] <= |n|^2 < edges[b + 1], n the integers k L/(2 pi), counting n and -n: 26, 66, 158, 234, ... of edges 1, 4, 9, 16, ...
+ *
+ * Out: counts  edges_len - 1 numbers
+ * In:  edges   edges_len integers, increasing
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_TABLE for fewer than two edges or edges that do not increase, FIXPAIR_ERROR_RANGE for an edge beyond 2^28
+ */
+fixpair_status_t fixpair_lattice_modes(uint64_t *counts,
+                                       const uint64_t *edges,
+                                       size_t edges_len);
+
+/*
+ * Scatter of P of a Gaussian field sampled by Poisson points: sigma = sqrt(2/N_k) (P + noise) (Avila & Adame 2022, Eq. sigma_th).
+ *
+ * Out: sigma  len doubles, (Mpc/h)^3
+ * In:  power  len values of P without shot noise
+ *      modes  len numbers N_k
+ *      noise  1/n; 0 for a field
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for modes or a sigma that are not positive, or negative noise
+ */
+fixpair_status_t fixpair_sigma_gaussian(double *sigma,
+                                        const double *power,
+                                        const double *modes,
+                                        size_t len,
+                                        double noise);
+
+/*
+ * Scatter of P of fixed simulations, per simulation (Eq. sigma_fix with the plus that its text and its fits need):
+ *
+ *     sigma_r = sqrt(2/N_k) (P [R_cv + (1 - R_cv) (2/pi) atan(k/k_soft)] + f_sn noise)
+ *
+ * Out: sigma        len doubles, (Mpc/h)^3
+ * In:  suppression  R_cv, k_soft, f_sn
+ *      k            len wavenumbers, in the unit of k_soft
+ *      power, modes, noise as for fixpair_sigma_gaussian
+ * Returns: as fixpair_sigma_gaussian; FIXPAIR_ERROR_RANGE for k or k_soft that is not positive, negative R_cv or f_sn
+ */
+fixpair_status_t fixpair_sigma_suppressed(double *sigma,
+                                          const struct fixpair_suppression *suppression,
+                                          const double *k,
+                                          const double *power,
+                                          const double *modes,
+                                          size_t len,
+                                          double noise);
+
+/*
+ * Fits R_cv, k_soft and f_sn to a measured scatter by weighted least squares (tab:fits; the paper takes k < 0.4 h/Mpc). All of k_soft is searched: there is nothing to
+ * start from.
+ *
+ * Without errors they are sigma_r/sqrt(2 (N - 1)) (Eq. errerr) of the model, found by iteration. Errors in proportion to the measured scatter, as the
+ * paper's, favour bins that happen to scatter little: sigma_r then comes out low by about 1/N.
+ *
+ * Out: fit
+ * In:  sigma      len measured scatters per simulation, see fixpair_sigma_per_simulation
+ *      error      len errors of them, or NULL
+ *      k, power, modes, noise as for fixpair_sigma_suppressed; with noise = 0 f_sn is 1 and has no error
+ *      estimates  N, independent ones; not read where there are errors
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for k, modes, sigma or errors that are not positive, or negative noise,
+ *          FIXPAIR_ERROR_SAMPLES for fewer bins than parameters or fewer than two estimates, FIXPAIR_ERROR_SINGULAR where the data have no step, FIXPAIR_ERROR_CONVERGENCE
+ * Cost: 5 microseconds a bin and search, some ten searches without errors
+ */
+fixpair_status_t fixpair_fit_suppression(struct fixpair_suppression_fit *fit,
+                                         const double *sigma,
+                                         const double *error,
+                                         const double *k,
+                                         const double *power,
+                                         const double *modes,
+                                         size_t len,
+                                         double noise,
+                                         uint64_t estimates);
+
+/*
+ * Ratio of two means a/b, Fixed over Normal, and its error |a/b| sqrt(r_a^2 + r_b^2 - 2 rho r_a r_b) with the relative errors r.
+ *
+ * Out: ratio, error   len doubles each
+ * In:  above, above_error, below, below_error  len means a and b and their standard errors
+ *      correlation    len coefficients rho of the two means, for simulations that share their seeds that of their values; NULL for independent ones
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for b = 0, negative errors, |rho| > 1, or a result that overflows
+ */
+fixpair_status_t fixpair_ratio_of_means(double *ratio,
+                                        double *error,
+                                        const double *above,
+                                        const double *above_error,
+                                        const double *below,
+                                        const double *below_error,
+                                        const double *correlation,
+                                        size_t len);
+
+/*
+ * Difference of two means in units of a scatter, (B_Fixed - B_Normal)/sigma_Normal, and its error.
+ *
+ * Out: difference, error  len doubles each
+ * In:  first, first_error, second, second_error  len means and their standard errors
+ *      correlation        as for fixpair_ratio_of_means, or NULL
+ *      sigma              len scatters
+ * Returns: as fixpair_ratio_of_means; FIXPAIR_ERROR_RANGE for sigma that is not positive
+ */
+fixpair_status_t fixpair_difference_of_means(double *difference,
+                                             double *error,
+                                             const double *first,
+                                             const double *first_error,
+                                             const double *second,
+                                             const double *second_error,
+                                             const double *correlation,
+                                             const double *sigma,
+                                             size_t len);
+
+/*
+ * Bias and its likelihood
+ * =======================
+ */
+
+/*
+ * Fills the parameters of a bias: b_g = p = 1, f_NL = 0, delta_c = 1.686.
+ *
+ * Out: bias
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT
+ */
+fixpair_status_t fixpair_bias_init(struct fixpair_bias *bias);
+
+/*
+ * Bias with local primordial non-Gaussianity (Avila & Adame 2022, Eq. bk; Dalal et al. 2008, Slosar et al. 2008):
+ *
+ *     b(k) = b_g + b_phi f_NL/alpha(k, z),  b_phi = 2 delta_c (b_g - p)
+ *
+ * Out: out    len doubles
+ * In:  bias   b_g, p, f_NL, delta_c
+ *      alpha  len values of fixpair_alpha at the redshift of the halos, in the convention of f_NL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for alpha or delta_c that is not positive, or a result that overflows
+ */
+fixpair_status_t fixpair_bias_of_k(double *out,
+                                   const struct fixpair_bias *bias,
+                                   const double *alpha,
+                                   size_t len);
+
+/*
+ * The spectrum of halos: b^2 P_lin or b P_lin.
+ *
+ * Out: power   len doubles, (Mpc/h)^3
+ * In:  bias
+ *      linear  len values of P_lin of matter at the redshift of the halos
+ *      alpha   as for fixpair_bias_of_k
+ *      spectrum  FIXPAIR_SPECTRUM_...
+ * Returns: as fixpair_bias_of_k; FIXPAIR_ERROR_CHOICE
+ */
+fixpair_status_t fixpair_halo_power(double *power,
+                                    const struct fixpair_bias *bias,
+                                    const double *linear,
+                                    const double *alpha,
+                                    size_t len,
+                                    int32_t spectrum);
+
+/*
+ * The bias of a measured spectrum, sqrt(P_hh/P_lin) or P_hm/P_lin, with the error that sigma makes.
+ *
+ * Out: out, error  len doubles each
+ * In:  power       len values of P_hh without shot noise, or of P_hm
+ *      sigma       len scatters of them
+ *      linear      len values of P_lin
+ *      spectrum    FIXPAIR_SPECTRUM_...
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_RANGE for P_hh, sigma or P_lin that is not positive, or a
+ *          result that overflows
+ */
+fixpair_status_t fixpair_measured_bias(double *out,
+                                       double *error,
+                                       const double *power,
+                                       const double *sigma,
+                                       const double *linear,
+                                       size_t len,
+                                       int32_t spectrum);
+
+/*
+ * A likelihood without data.
+ *
+ * It holds all that measured spectra say of b_g, p and f_NL, exp(-chi^2/2) with (Eq. chi2, likelihood)
+ *
+ *     chi^2 = (d - m)^T C^-1 (d - m),  m = b(k)^2 P_lin or b(k) P_lin
+ *
+ * in 36 numbers, since m is a sum of P_lin, P_lin/alpha and P_lin/alpha^2: after spectra were added, chi^2 of any parameters takes 30 multiplications, whatever the number
+ * of bins. Fill it with spectra of P_hh, of P_hm, or of both, at one redshift; only bins that are passed are fitted (the paper takes k <= 0.09 h/Mpc):
+ *
+ * fixpair_likelihood_init(&likelihood);
+ * fixpair_likelihood_add(&likelihood, power, sigma, linear, alpha, bins, FIXPAIR_SPECTRUM_HALO_HALO);
+ * fixpair_bias_init(&start);                                    p = 1
+ * fixpair_bias_posterior(&fit, posteriors, 2, &likelihood, &start, FIXPAIR_FREE_B_G | FIXPAIR_FREE_F_NL, 128, 0.68, scratch, scratch_len);
+ * posteriors[1].peak is the estimate of f_NL, posteriors[1].centre +- posteriors[1].half_width its 68% region
+ *
+ * Out: likelihood
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT
+ */
+fixpair_status_t fixpair_likelihood_init(struct fixpair_bias_likelihood *likelihood);
+
+/*
+ * Adds bins that do not correlate, each with its sigma.
+ *
+ * In/Out: likelihood
+ * In:     power     len values of P_hh without shot noise, or of P_hm, (Mpc/h)^3
+ *         sigma     len standard deviations of them: of one simulation or one pair, or of the mean of an ensemble over sqrt(N)
+ *         linear    len values of P_lin at their redshift, averaged over the modes of each bin
+ *         alpha     len values of fixpair_alpha at their redshift
+ *         spectrum  FIXPAIR_SPECTRUM_...
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_RANGE for sigma, P_lin or alpha that is not positive, or numbers
+ *          too extreme
+ */
+fixpair_status_t fixpair_likelihood_add(struct fixpair_bias_likelihood *likelihood,
+                                        const double *power,
+                                        const double *sigma,
+                                        const double *linear,
+                                        const double *alpha,
+                                        size_t len,
+                                        int32_t spectrum);
+
+/*
+ * Scratch of fixpair_likelihood_add_correlated: 48 bytes a bin.
+ *
+ * Out: scratch
+ * In:  bins
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERFLOW
+ */
+fixpair_status_t fixpair_likelihood_add_correlated_scratch(struct fixpair_layout *scratch, size_t bins);
+
+/*
+ * Adds bins that correlate, P_hh, P_hm, or P_hh and P_hm with their cross-covariance.
+ *
+ * In/Out: likelihood
+ * In:     power, linear, alpha  len doubles each, as for fixpair_likelihood_add: first those of P_hh, then those of P_hm
+ *         root       len x len doubles: the lower triangle L of their covariance L L^T, row by row (fixpair_covariance_root); what lies above the diagonal is not used
+ *         halo_halo  how many of them are P_hh
+ *         precision  what the inverse covariance is multiplied by: 1, or for a covariance that was measured fixpair_hartlap_factor
+ *         scratch    scratch_len bytes
+ * Returns: as fixpair_likelihood_add; FIXPAIR_ERROR_RANGE for halo_halo > len or a precision that is not positive, FIXPAIR_ERROR_SINGULAR for a root with a diagonal that is
+ *          not, FIXPAIR_ERROR_SCRATCH
+ */
+fixpair_status_t fixpair_likelihood_add_correlated(struct fixpair_bias_likelihood *likelihood,
+                                                   const double *power,
+                                                   const double *linear,
+                                                   const double *alpha,
+                                                   const double *root,
+                                                   size_t len,
+                                                   size_t halo_halo,
+                                                   double precision,
+                                                   void *scratch,
+                                                   size_t scratch_len);
+
+/*
+ * Adds the data of another likelihood, independent of these.
+ *
+ * In/Out: likelihood
+ * In:     other
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE or FIXPAIR_ERROR_RANGE for numbers that no data have made
+ */
+fixpair_status_t fixpair_likelihood_merge(struct fixpair_bias_likelihood *likelihood,
+                                          const struct fixpair_bias_likelihood *other);
+
+/*
+ * chi^2 of given parameters.
+ *
+ * Out: chi_squared
+ * In:  likelihood, bias
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for delta_c that is not positive, numbers that no data have made, or a result that
+ *          overflows
+ */
+fixpair_status_t fixpair_likelihood_chi_squared(double *chi_squared,
+                                                const struct fixpair_bias_likelihood *likelihood,
+                                                const struct fixpair_bias *bias);
+
+/*
+ * Fits and posteriors
+ * ===================
+ */
+
+/*
+ * The best parameters, by Gauss-Newton steps.
+ *
+ * The paper's cases are FIXPAIR_FREE_B_G (i), FIXPAIR_FREE_B_G | FIXPAIR_FREE_P (ii), FIXPAIR_FREE_B_G | FIXPAIR_FREE_F_NL (iii); each of the three may be free alone. p and f_NL
+ * enter as one product, so they cannot be free together. b_g > 0, since P_hh is the same with all signs turned.
+ *
+ * Out: fit         the minimum, errors from the curvature there, covariance, chi^2, degrees of freedom
+ * In:  likelihood
+ *      start       the parameters that are not free, and a place to begin; the others need not be near
+ *      free        FIXPAIR_FREE_... together
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for other sets of parameters, FIXPAIR_ERROR_RANGE for delta_c that is not positive, or
+ *          numbers that no data have made, FIXPAIR_ERROR_SINGULAR where the data do not constrain a parameter (p where f_NL = 0, f_NL where b_g = p), FIXPAIR_ERROR_CONVERGENCE
+ *          if there is no minimum at b_g > 0
+ */
+fixpair_status_t fixpair_fit_bias(struct fixpair_bias_fit *fit,
+                                  const struct fixpair_bias_likelihood *likelihood,
+                                  const struct fixpair_bias *start,
+                                  uint32_t free);
+
+/*
+ * Scratch of fixpair_bias_posterior: 16 bytes a point.
+ *
+ * Out: scratch
+ * In:  points  16 to 8192
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _RANGE
+ */
+fixpair_status_t fixpair_bias_posterior_scratch(struct fixpair_layout *scratch, size_t points);
+
+/*
+ * The fit, and the posterior of each free parameter, in one call: range, grid and integrals of fixpair_bias_range, _bias_grid, _marginal and _read_posterior.
+ *
+ * Priors are flat in the free parameters, with b_g > 0.
+ *
+ * Out: fit             as fixpair_fit_bias
+ *      posteriors      parameters structs, one for each free parameter, in the order b_g, p, f_NL
+ * In:  likelihood, start, free as for fixpair_fit_bias
+ *      points          of the grid, for each parameter: 128 for three digits and more
+ *      probability     of the central region: 0.68 in the paper
+ *      scratch         scratch_len bytes
+ * Returns: as fixpair_fit_bias; FIXPAIR_ERROR_LENGTH for another number of parameters, FIXPAIR_ERROR_RANGE for points or a probability outside (0, 1), FIXPAIR_ERROR_SCRATCH, FIXPAIR_ERROR_CONVERGENCE if the
+ *          posterior does not end anywhere, as that of f_NL where b_g = p cannot be excluded
+ * Cost: 30 ns a point of the grid, 0.5 ms for 128 x 128
+ */
+fixpair_status_t fixpair_bias_posterior(struct fixpair_bias_fit *fit,
+                                        struct fixpair_posterior *posteriors,
+                                        size_t parameters,
+                                        const struct fixpair_bias_likelihood *likelihood,
+                                        const struct fixpair_bias *start,
+                                        uint32_t free,
+                                        size_t points,
+                                        double probability,
+                                        void *scratch,
+                                        size_t scratch_len);
+
+/*
+ * Where the posterior is: a range of each free parameter beyond which its density is below exp(-12.5) of the peak.
+ *
+ * Out: ranges      2 parameters doubles: lowest and highest of the first free parameter, then of the second, in the order b_g, p, f_NL
+ * In:  likelihood, start, free as for fixpair_fit_bias
+ * Returns: as fixpair_bias_posterior
+ */
+fixpair_status_t fixpair_bias_range(double *ranges,
+                                    size_t parameters,
+                                    const struct fixpair_bias_likelihood *likelihood,
+                                    const struct fixpair_bias *start,
+                                    uint32_t free);
+
+/*
+ * chi^2 on a grid of uniform steps, ends included, the second free parameter fastest.
+ *
+ * Out: chi_squared  len doubles, len the product of all points
+ * In:  likelihood
+ *      fixed        the parameters that are not free
+ *      free         FIXPAIR_FREE_... together
+ *      ranges       2 parameters doubles, as from fixpair_bias_range
+ *      points       parameters numbers of points, 2 or more
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_LENGTH, FIXPAIR_ERROR_RANGE for empty ranges, fewer than two points, or chi^2 that
+ *          overflows
+ * Cost: 10 ns a point
+ */
+fixpair_status_t fixpair_bias_grid(double *chi_squared,
+                                   size_t len,
+                                   const struct fixpair_bias_likelihood *likelihood,
+                                   const struct fixpair_bias *fixed,
+                                   uint32_t free,
+                                   const double *ranges,
+                                   const size_t *points,
+                                   size_t parameters);
+
+/*
+ * The posterior density of one parameter of a grid of chi^2, integrated over the other and normalised.
+ *
+ * Out: density      as many doubles as that parameter has points
+ * In:  chi_squared  points_first x points_second doubles, the second fastest; 1 for the second of a grid of one parameter
+ *      axis         0 for the first parameter, 1 for the second
+ *      low, high    the ends of its range, in whose inverse unit the density comes
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for another axis, FIXPAIR_ERROR_RANGE for an axis of one point, or an empty range
+ */
+fixpair_status_t fixpair_marginal(double *density,
+                                  const double *chi_squared,
+                                  size_t points_first,
+                                  size_t points_second,
+                                  int32_t axis,
+                                  double low,
+                                  double high);
+
+/*
+ * Peak, mean, deviation and central region of a density on a uniform grid.
+ *
+ * Out: posterior
+ * In:  density      points doubles, zero or more, normalised or not
+ *      low, high    of the first point and of the last
+ *      probability  of the central region: 0.68 in the paper
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for fewer than three points, FIXPAIR_ERROR_RANGE for an empty range, negative densities
+ *          or none above zero, or a probability outside (0, 1)
+ */
+fixpair_status_t fixpair_read_posterior(struct fixpair_posterior *posterior,
+                                        const double *density,
+                                        size_t points,
+                                        double low,
+                                        double high,
+                                        double probability);
+
+/*
+ * A contour of a grid of two parameters, as straight segments (x0, y0, x1, y1), x the first parameter, y the second. Levels: the least chi^2 plus 1 or 4 (the paper's), or plus those of
+ * fixpair_delta_chi_squared for two parameters.
+ *
+ * Neighbouring segments share their ends bit for bit; ends lie on the contour to second order in the step.
+ *
+ * Out: segments      4 segments_len doubles; only as many as there are segments are written
+ *      count         how many there are. With segments_len = 0 they are only counted
+ * In:  chi_squared   points_first x points_second doubles, the second fastest
+ *      ranges        4 doubles: lowest and highest of the first parameter, and of the second
+ *      level
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for fewer places than segments, FIXPAIR_ERROR_RANGE for fewer than two points, or
+ *          empty ranges
+ */
+fixpair_status_t fixpair_contours(double *segments,
+                                  size_t segments_len,
+                                  size_t *count,
+                                  const double *chi_squared,
+                                  size_t points_first,
+                                  size_t points_second,
+                                  const double *ranges,
+                                  double level);
+
+/*
+ * Delta chi^2 of the region that holds the given probability of Gaussian parameters: 1 and 4 hold 0.6827 and 0.9545 of one parameter, 2.30 and 6.18 of two.
+ *
+ * Out: delta
+ * In:  probability  between 0 and 1
+ *      parameters   1 or 2
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _NOT_FINITE, _RANGE
+ */
+fixpair_status_t fixpair_delta_chi_squared(double *delta,
+                                           double probability,
+                                           uint32_t parameters);
+
+/*
+ * What the inverse of a covariance of p values from N independent estimates must be multiplied by to be unbiased: (N - p - 2)/(N - 1) (Hartlap,
+ * Simon & Schneider 2007, astro-ph/0608064).
+ *
+ * Out: factor
+ * In:  estimates  N: a pair is one
+ *      values     p
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, FIXPAIR_ERROR_SAMPLES unless N >= p + 3, FIXPAIR_ERROR_RANGE for no values
+ */
+fixpair_status_t fixpair_hartlap_factor(double *factor,
+                                        uint64_t estimates,
+                                        uint64_t values);
+
+/*
+ * What the variance of q parameters fitted with such an inverse, Hartlap's factor included, must be multiplied by; errors by its root (Percival et al. 2014,
+ * arXiv:1312.4841, Eq. 18).
+ *
+ * Out: factor
+ * In:  estimates   N: a pair is one
+ *      values      p
+ *      parameters  q
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, FIXPAIR_ERROR_SAMPLES unless N >= p + 5, FIXPAIR_ERROR_RANGE for no parameters or more of them than values
+ */
+fixpair_status_t fixpair_percival_factor(double *factor,
+                                         uint64_t estimates,
+                                         uint64_t values,
+                                         uint64_t parameters);
+
+/*
+ * Matched simulations
+ * ===================
+ */
+
+/*
+ * The difference of matched estimates, Delta f = f100 - f0 (Avila & Adame 2022, Eq. diff), with both scatters, their correlation, and its own.
+ *
+ * Out: difference
+ * In:  first, second  len estimates each, of the same seeds in the same order; a pair is one estimate
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_SAMPLES for fewer than two, FIXPAIR_ERROR_SINGULAR where one of the two does not vary,
+ *          FIXPAIR_ERROR_RANGE if a sum overflows
+ */
+fixpair_status_t fixpair_matched_difference(struct fixpair_difference *difference,
+                                            const double *first,
+                                            const double *second,
+                                            size_t len);
+
+/*
+ * Scatter of a difference: sqrt(s1^2 + s2^2 - 2 rho s1 s2) (Eq. correlation).
+ *
+ * Out: sigma
+ * In:  first, second  s1, s2
+ *      correlation    rho
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _NOT_FINITE, FIXPAIR_ERROR_RANGE for negative scatter, |rho| > 1, or a result that overflows
+ */
+fixpair_status_t fixpair_difference_sigma(double *sigma,
+                                          double first,
+                                          double second,
+                                          double correlation);
+
+/*
+ * V_eff/V: how many simulations of the reference one simulation is worth, (sigma_ref/sigma)^2 (m_ref/m).
+ *
+ * Each sigma is that of an estimate, which costs m simulations: 2 for a pair. In a matched difference count the other half too if it is run for the
+ * purpose; the paper's table does not.
+ *
+ * Out: volume
+ * In:  reference, reference_simulations  sigma_ref, m_ref
+ *      sigma, simulations                sigma, m
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _NOT_FINITE, FIXPAIR_ERROR_RANGE for sigma that is not positive, no simulations, or a result that overflows
+ */
+fixpair_status_t fixpair_effective_volume(double *volume,
+                                          double reference,
+                                          uint64_t reference_simulations,
+                                          double sigma,
+                                          uint64_t simulations);
+
+/*
+ * p = b - (b - 1) f/f_true of halos whose f_NL was measured as if p = 1, in a universe of f_true (Eq. p).
+ *
+ * Out: p, error
+ * In:  b_g, b_g_error, f_nl, f_nl_error  measured, with standard errors
+ *      covariance  of the two; 0 where it is not known
+ *      f_true
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for f_true = 0, negative errors, a covariance beyond the product of the errors, or a result that overflows
+ */
+fixpair_status_t fixpair_universality(double *p,
+                                      double *error,
+                                      double b_g,
+                                      double b_g_error,
+                                      double f_nl,
+                                      double f_nl_error,
+                                      double covariance,
+                                      double f_true);
+
+/*
+ * Scratch of fixpair_control_variates: 16 bytes a sample.
+ *
+ * Out: scratch
+ * In:  samples
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERFLOW
+ */
+fixpair_status_t fixpair_control_variates_scratch(struct fixpair_layout *scratch, size_t samples);
+
+/*
+ * The expectation of y from few costly simulations, by controls c of the same seeds whose expectation mu is known: <y> - beta (<c> - mu), a control for each value (CARPool,
+ * Chartier et al. 2021, arXiv:2009.08970). With y = f100, c = f0, mu = 0 and beta = 1 the mean is Delta f of Eq. diff; the optimal beta gains more:
+ *
+ *     beta = cov(y, c)/(var(c) + N error^2)
+ *
+ * The error is that of a regression: it pays for estimating beta, on average with fixpair_control_variate_loss, and for the error of mu.
+ *
+ * Out: values   values_len structs, one for each value of a sample
+ * In:  y, c     samples x values_len doubles each, row by row; a pair is one sample
+ *      samples  N
+ *      mu       values_len expectations of c
+ *      error    values_len standard errors of mu: s_c/sqrt(N_c) from N_c cheap simulations of their own; NULL where mu is exact
+ *      choice   FIXPAIR_BETA_...
+ *      beta     read with FIXPAIR_BETA_GIVEN only
+ *      scratch  scratch_len bytes
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, _SCRATCH, FIXPAIR_ERROR_LENGTH for no values, FIXPAIR_ERROR_SAMPLES for fewer than two samples, or four for
+ *          the optimal beta, FIXPAIR_ERROR_SINGULAR where y or c does not vary, FIXPAIR_ERROR_RANGE for a negative error or a sum that overflows
+ */
+fixpair_status_t fixpair_control_variates(struct fixpair_control_variate *values,
+                                          size_t values_len,
+                                          const double *y,
+                                          const double *c,
+                                          size_t samples,
+                                          const double *mu,
+                                          const double *error,
+                                          int32_t choice,
+                                          double beta,
+                                          void *scratch,
+                                          size_t scratch_len);
+
+/*
+ * V_eff of y - beta c over that of y, sigma_y^2/(sigma_y^2 - 2 beta rho sigma_y sigma_c + beta^2 sigma_c^2): 1/(1 - rho^2) for the optimum beta = rho sigma_y/sigma_c.
+ *
+ * Out: gain
+ * In:  sigma_y, sigma_c, correlation, beta
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _NOT_FINITE, FIXPAIR_ERROR_RANGE for sigma_y = 0, negative scatter, |rho| > 1, or a gain that overflows
+ */
+fixpair_status_t fixpair_control_variate_gain(double *gain,
+                                              double sigma_y,
+                                              double sigma_c,
+                                              double correlation,
+                                              double beta);
+
+/*
+ * How much the variance of a mean grows, on average, because the coefficients of q controls come from the same N samples: (N - 2)/(N - q - 2) (Lavenberg & Welch 1981).
+ *
+ * Out: loss
+ * In:  estimates  N
+ *      controls   q: 1 for each value of fixpair_control_variates
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, FIXPAIR_ERROR_SAMPLES unless N >= q + 3
+ */
+fixpair_status_t fixpair_control_variate_loss(double *loss,
+                                              uint64_t estimates,
+                                              uint64_t controls);
+
+#if !defined(FIXPAIR_NO_LINALG)
+/*
+ * Covariance matrices
+ * ===================
+ */
+
+/*
+ * Scratch of fixpair_covariance_root: 8 values^2 bytes and a little.
+ *
+ * Out: scratch
+ * In:  values
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, FIXPAIR_ERROR_OVERFLOW for more than 65536 values
+ */
+fixpair_status_t fixpair_covariance_root_scratch(struct fixpair_layout *scratch, size_t values);
+#endif
+
+#if !defined(FIXPAIR_NO_LINALG)
+/*
+ * The Cholesky factor L of a covariance C = L L^T, by faer. Not in a library without the feature "linalg".
+ *
+ * The one function of this section that may allocate, inside faer, for hundreds of values; fixpair_carpool is the other. Bits depend on the instructions of the processor.
+ *
+ * Out: root        values x values doubles: the lower triangle, row by row, zeros above
+ * In:  covariance  values x values doubles, symmetric
+ *      scratch     scratch_len bytes
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _SCRATCH, FIXPAIR_ERROR_RANGE for a matrix that is not symmetric, FIXPAIR_ERROR_SINGULAR for one that is
+ *          not positive definite to rounding: as the covariance of N estimates for values >= N
+ * Cost: values^3/3 multiplications
+ */
+fixpair_status_t fixpair_covariance_root(double *root,
+                                         const double *covariance,
+                                         size_t values,
+                                         void *scratch,
+                                         size_t scratch_len);
+#endif
+
+#if !defined(FIXPAIR_NO_LINALG)
+/*
+ * Scratch of fixpair_carpool: 8 (values^2 + controls^2 + values controls) bytes and a little.
+ *
+ * Out: scratch
+ * In:  values, controls
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, FIXPAIR_ERROR_OVERFLOW for more than 65536 of either
+ */
+fixpair_status_t fixpair_carpool_scratch(struct fixpair_layout *scratch, size_t values, size_t controls);
+#endif
+
+#if !defined(FIXPAIR_NO_LINALG)
+/*
+ * CARPool with a matrix of coefficients (Chartier et al. 2021, arXiv:2009.08970): each value of y is corrected by all controls. Not in a library without the feature "linalg".
+ *
+ *     <y> - B (<c> - mu),  B = C_yc (C_cc + N C_mu)^-1
+ *
+ * Each control costs a degree of freedom: where N is not much larger than their number, fixpair_control_variates does better.
+ *
+ * Out: mean        values doubles: the expectation of y
+ *      covariance  values x values doubles: of that mean, with the costs of estimating B and of the error of mu
+ *      beta        values x controls doubles: B
+ * In:  y           samples x values doubles, row by row
+ *      c           samples x controls doubles, of the same seeds
+ *      samples     N; a pair is one
+ *      values
+ *      mu          controls expectations of c
+ *      covariance_of_mu  controls x controls doubles: that of c over N_c, from N_c cheap simulations of their own; NULL where mu is exact
+ *      controls
+ *      scratch     scratch_len bytes
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _SCRATCH, FIXPAIR_ERROR_LENGTH for no values or controls, FIXPAIR_ERROR_SAMPLES unless N >= controls + 3,
+ *          FIXPAIR_ERROR_SINGULAR where controls are combinations of others, FIXPAIR_ERROR_RANGE for samples beyond 1e140, a covariance that is not symmetric, or a result that overflows
+ */
+fixpair_status_t fixpair_carpool(double *mean,
+                                 double *covariance,
+                                 double *beta,
+                                 const double *y,
+                                 const double *c,
+                                 size_t samples,
+                                 size_t values,
+                                 const double *mu,
+                                 const double *covariance_of_mu,
+                                 size_t controls,
+                                 void *scratch,
+                                 size_t scratch_len);
+#endif
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -7,6 +7,7 @@
     reason = "the text is that of the header"
 )]
 
+pub mod bias;
 pub mod binning;
 pub mod bispectrum;
 pub mod bispectrum_sums;
@@ -15,6 +16,9 @@ pub mod built_in;
 pub mod cells;
 pub mod correlation;
 pub mod cosmology;
+#[cfg(feature = "linalg")]
+pub mod covariance;
+pub mod ensemble;
 pub mod evolve;
 pub mod exec;
 pub mod factors;
@@ -24,13 +28,17 @@ pub mod force;
 pub mod halos;
 pub mod initial;
 pub mod kick;
+pub mod matched;
 pub mod mesh;
 pub mod mode_table;
 pub mod noise;
 pub mod particles;
 pub mod pm;
+pub mod posterior;
 pub mod power;
+pub mod resample;
 pub mod run;
+pub mod scatter;
 pub mod spheres;
 pub mod stages;
 pub mod status;

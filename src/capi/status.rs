@@ -46,6 +46,10 @@ pub const FIXPAIR_ERROR_CONVERGENCE: i32 = -16;
 pub const FIXPAIR_ERROR_OUTSIDE: i32 = -17;
 /// The host's observer asked a run to stop; it can go on.
 pub const FIXPAIR_ERROR_STOPPED: i32 = -18;
+/// There are fewer independent estimates than the statistic needs.
+pub const FIXPAIR_ERROR_SAMPLES: i32 = -19;
+/// A matrix is singular or not positive definite, or the data say nothing about a parameter.
+pub const FIXPAIR_ERROR_SINGULAR: i32 = -20;
 
 pub(super) fn code(result: Result<()>) -> fixpair_status_t {
     result.map_or_else(Error::code, |()| FIXPAIR_OK)

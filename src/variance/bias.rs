@@ -61,7 +61,7 @@ pub enum Spectrum {
 ///
 /// # Errors
 /// `Length` for arrays of different lengths, `NotFinite`, `Range` for alpha or delta_c that is not positive, or a result that overflows.
-pub fn bias(out: &mut [f64], parameters: &Bias, alpha: &[f64]) -> Result<()> {
+pub fn bias_of_k(out: &mut [f64], parameters: &Bias, alpha: &[f64]) -> Result<()> {
     same_length(out.len(), &[alpha.len()])?;
     parameters.check()?;
     positive(alpha)?;
@@ -71,7 +71,7 @@ pub fn bias(out: &mut [f64], parameters: &Bias, alpha: &[f64]) -> Result<()> {
 /// b^2 P_lin or b P_lin.
 ///
 /// # Errors
-/// As [`fn@bias`].
+/// As [`bias_of_k`].
 pub fn halo_power(
     out: &mut [f64],
     parameters: &Bias,

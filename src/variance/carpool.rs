@@ -32,7 +32,7 @@ pub struct Carpool<'a> {
 /// Work space of [`carpool`] for `values` values of y and `controls` of c.
 ///
 /// # Errors
-/// `Overflow` if it does not fit the address space.
+/// `Overflow` for more than 65536 of either.
 pub fn carpool_scratch(values: usize, controls: usize) -> Result<Layout> {
     let columns = values.checked_add(1).ok_or(Error::Overflow)?;
     let right = columns.checked_mul(controls).ok_or(Error::Overflow)?;

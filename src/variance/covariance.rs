@@ -8,18 +8,19 @@ use crate::status::{Error, Result};
 /// Off-diagonal elements may differ from their mirror images by this much, as correlation coefficients: users' covariances are sums of products.
 const SYMMETRY: f64 = 1e-9;
 
+/// Most rows of a matrix: 34 GB, beyond which sums of sizes inside faer need not be trusted.
+const MOST: usize = 1 << 16;
+
 /// Numbers in a square matrix.
 pub(super) fn square(side: usize) -> Result<usize> {
-    side.checked_mul(side).ok_or(Error::Overflow)
+    if side > MOST { Err(Error::Overflow) } else { Ok(side * side) }
 }
 
 /// Work space of [`covariance_root`]: the matrix, its deviations, and what faer asks for.
 ///
 /// # Errors
-/// `Overflow` if it does not fit the address space.
+/// `Overflow` for more than 65536 values.
 pub fn covariance_root_scratch(values: usize) -> Result<Layout> {
-    // faer's own sum must not overflow either.
-    Layout::EMPTY.and::<f64>(square(values)?)?.and::<f64>(square(values)?)?;
     Layout::EMPTY.and::<f64>(square(values)?)?.and::<f64>(values)?.and::<u8>(dense::factor_bytes(values))
 }
 

@@ -145,25 +145,30 @@ fn add_squares(
     }
 }
 
-/// One more sample. Cost: one multiplication and addition for each number of the state.
+/// More samples, one after another. Cost: one multiplication and addition for each sample and number of the state.
 ///
 /// # Errors
-/// `Length` if the sample has another number of values, `Version` for a state that [`ensemble_init`] did not make, `NotFinite`, and `Range`
+/// `Length` unless they are whole samples of as many values as the state has, `Version` for a state that [`ensemble_init`] did not make, `NotFinite`, and `Range`
 /// for values beyond [`LARGEST_SAMPLE`]. The state is untouched by all of them.
-pub fn ensemble_add(state: &mut [f64], sample: &[f64]) -> Result<()> {
-    let (count, values, moments) = head(state)?;
-    same_length(values, &[sample.len()])?;
-    finite(sample)?;
-    if sample.iter().any(|x| x.abs() > LARGEST_SAMPLE) {
+pub fn ensemble_add(state: &mut [f64], samples: &[f64]) -> Result<()> {
+    let (_, values, moments) = head(state)?;
+    if !samples.len().is_multiple_of(values) {
+        return Err(Error::Length);
+    }
+    finite(samples)?;
+    if samples.iter().any(|x| x.abs() > LARGEST_SAMPLE) {
         return Err(Error::Range);
     }
-    let (mean, squares) = state[HEAD..].split_at_mut(values);
-    let total = count + 1.0;
-    add_squares(squares, moments, values, count / total, |i| sample[i] - mean[i]);
-    for (mean, x) in mean.iter_mut().zip(sample) {
-        *mean += (x - *mean) / total;
+    let (head, rest) = state.split_at_mut(HEAD);
+    let (mean, squares) = rest.split_at_mut(values);
+    for sample in samples.chunks_exact(values) {
+        let (before, total) = (head[0], head[0] + 1.0);
+        add_squares(squares, moments, values, before / total, |i| sample[i] - mean[i]);
+        for (mean, x) in mean.iter_mut().zip(sample) {
+            *mean += (x - *mean) / total;
+        }
+        head[0] = total;
     }
-    state[0] = total;
     Ok(())
 }
 

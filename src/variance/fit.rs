@@ -76,6 +76,11 @@ impl Free {
     }
 }
 
+/// Is this a set of parameters that can be fitted?
+pub(crate) fn is_set(mask: u32) -> bool {
+    Free::new(mask).is_ok()
+}
+
 /// Derivatives of the six coefficients by (b_g, p, f_NL).
 fn slopes(at: &Bias) -> [[f64; COLUMNS]; 3] {
     let (b, x) = (at.b_g, at.shift());
@@ -176,7 +181,7 @@ pub(super) fn minimum(likelihood: &BiasLikelihood, start: &Bias, free: &Free) ->
 /// # Errors
 /// `NotFinite`, `Choice` for other sets of parameters, `Range` for delta_c that is not positive, `Singular` where the data do not constrain a parameter (p where f_NL = 0,
 /// f_NL where b_g = p), `Convergence` if no minimum is found at b_g > 0.
-pub fn bias_fit(likelihood: &BiasLikelihood, start: &Bias, free: u32) -> Result<BiasFit> {
+pub fn fit_bias(likelihood: &BiasLikelihood, start: &Bias, free: u32) -> Result<BiasFit> {
     let free = Free::new(free)?;
     likelihood.check()?;
     start.check()?;

@@ -21,14 +21,14 @@ use crate::status::{Error, Result};
 /// Five columns and the data.
 pub(super) const COLUMNS: usize = 6;
 
-/// All that measured spectra say of b_g, p and f_NL. Begins as [`BiasLikelihood::EMPTY`]; spectra that are independent are added, of P_hh, P_hm or both.
+/// All that measured spectra say of b_g, p and f_NL. Begins empty; spectra that are independent are added, of P_hh, P_hm or both.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct BiasLikelihood {
     /// Values that were added.
     pub bins: u64,
-    /// R, upper triangular.
-    pub root: [[f64; COLUMNS]; COLUMNS],
+    /// R of chi^2 = |R c|^2 with c = (b_g^2, 2 b_g x, x^2, b_g, x, -1) and x = 2 delta_c (b_g - p) f_NL; upper triangular.
+    pub root: [[f64; 6]; 6],
 }
 
 /// Measured spectra and what their model is made of, bin by bin.

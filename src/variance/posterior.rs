@@ -5,7 +5,7 @@
 
 use super::bias::Bias;
 use super::check::{finite, result, same_length};
-use super::fit::{BiasFit, Free, bias_fit};
+use super::fit::{BiasFit, Free, fit_bias};
 use super::likelihood::BiasLikelihood;
 use crate::math::sqrt;
 use crate::scratch::{Arena, Layout};
@@ -58,7 +58,7 @@ fn at([low, high]: [f64; 2], points: usize, i: usize) -> f64 {
 /// Where the free parameters' posterior is: a range of each, in the order b_g, p, f_NL, beyond which the density is below exp(-12.5) of its peak.
 ///
 /// # Errors
-/// As [`bias_fit`]; `Length` unless there is a range for each free parameter; `Convergence` if the posterior does not end anywhere, as that of f_NL where b_g = p cannot be
+/// As [`fit_bias`]; `Length` unless there is a range for each free parameter; `Convergence` if the posterior does not end anywhere, as that of f_NL where b_g = p cannot be
 /// excluded.
 pub fn bias_range(
     ranges: &mut [[f64; 2]],
@@ -66,7 +66,7 @@ pub fn bias_range(
     fixed: &Bias,
     free: u32,
 ) -> Result<()> {
-    let fit = bias_fit(likelihood, fixed, free)?;
+    let fit = fit_bias(likelihood, fixed, free)?;
     let free = Free::new(free)?;
     same_length(free.numbers().len(), &[ranges.len()])?;
     let (found, _) = range(likelihood, &fit, &free)?;
@@ -137,7 +137,7 @@ fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f
 /// `fixed`: the parameters that are not free.
 ///
 /// # Errors
-/// `Choice` for a set of parameters that [`bias_fit`] does not take, `Length` unless there is a place for each point, `NotFinite`, `Range` for a range that is empty, fewer than two points, or a
+/// `Choice` for a set of parameters that [`fit_bias`] does not take, `Length` unless there is a place for each point, `NotFinite`, `Range` for a range that is empty, fewer than two points, or a
 /// chi^2 that overflows.
 pub fn bias_grid(
     out: &mut [f64],
@@ -230,7 +230,7 @@ pub struct Posterior {
 ///
 /// # Errors
 /// `Length` for fewer than three points, `NotFinite`, `Range` for an empty range, negative densities, none above zero, or a probability outside (0, 1).
-pub fn posterior(density: &[f64], range: [f64; 2], probability: f64) -> Result<Posterior> {
+pub fn read_posterior(density: &[f64], range: [f64; 2], probability: f64) -> Result<Posterior> {
     finite(density)?;
     finite(&[range[0], range[1], probability])?;
     let points = density.len();
@@ -323,7 +323,7 @@ pub fn bias_posterior_scratch(points: usize) -> Result<Layout> {
 /// Cost: 30 ns a point of the grid.
 ///
 /// # Errors
-/// As [`bias_range`] and [`posterior`]; `Range` for points outside [`POINTS`], `Scratch`.
+/// As [`bias_range`] and [`read_posterior`]; `Range` for points outside [`POINTS`], `Scratch`.
 pub fn bias_posterior(
     likelihood: &BiasLikelihood,
     start: &Bias,
@@ -333,7 +333,7 @@ pub fn bias_posterior(
     scratch: &mut [u8],
 ) -> Result<Constraints> {
     let mut arena = Arena::new(scratch, bias_posterior_scratch(points)?)?;
-    let fit = bias_fit(likelihood, start, free)?;
+    let fit = fit_bias(likelihood, start, free)?;
     let free = Free::new(free)?;
     let (range, least) = range(likelihood, &fit, &free)?;
     let count = free.numbers().len();
@@ -352,7 +352,7 @@ pub fn bias_posterior(
     let mut read = [Posterior::default(); 2];
     for (axis, density) in [first, second].into_iter().enumerate().take(count) {
         normalise(density, range[axis])?;
-        read[axis] = posterior(density, range[axis], probability)?;
+        read[axis] = read_posterior(density, range[axis], probability)?;
     }
     Ok(Constraints { fit, grid, posterior: read })
 }
