@@ -1,4 +1,4 @@
-"""fixpair's deposits, spectra and bispectra for numpy: what the checks need of fixpair.h, and nothing more.
+"""fixpair's deposits, spectra, bispectra and statistics for numpy: what the checks need of fixpair.h, and nothing more.
 
     library = Library("target/release/libfixpair.so")
     mesh = library.mesh(n, np.float32)                        # (n, n, n + 2): rows are padded for a transform in place
@@ -60,6 +60,9 @@ SIGNATURES = {
     "subtract_shot_noise": "pnpnpnwpn", "closed_triangle_count": "ppnp",
     "closed_triangles": "pnpnp", "triangle_counts_scratch": "ppnpnn", "triangle_counts": "ppnpnnpnp", "bispectrum_values": "pnpn",
     "bispectrum_normalise": "ppnndd", "bispectrum_shot_noise": "ppnpnd", "bispectrum_reduced": "pppnpn",
+    "ensemble_length": "pni", "ensemble_init": "pnni", "ensemble_add": "pnpn", "ensemble_covariance": "pnnpnnn",
+    "covariance_root_scratch": "pn", "covariance_root": "ppnpn", "matched_difference": "pppn", "delta_chi_squared": "pdw",
+    "bias_init": "p", "likelihood_init": "p", "likelihood_add": "pppppni", "fit_bias": "pppw", "fit_suppression": "ppppppndu",
 }
 TWINS = {
     "fft_tables_scratch": "pn", "fft_tables_init": "pnn", "fft_scratch": "pn", "fft_init": "ppnnpnp", "deposit_scratch": "ppni",
