@@ -11,8 +11,8 @@ from scipy.stats import chi2, pearsonr
 from fixpair import Library
 
 COVARIANCE, HALO_HALO, B_G, F_NL = 1, 0, 1, 4
-# Sums of a thousand terms round to 1e-13; minima of scipy's curve_fit end where chi^2 changes by 1e-8, so parameters agree to its root.
-ROUNDING, MINIMUM = 1e-11, 2e-4
+# Sums of a thousand terms round to 1e-13. scipy ends where chi^2 changes by 1e-8: parameters agree to its root, errors to some times that.
+ROUNDING, MINIMUM = 1e-11, 1e-3
 
 
 class Bias(ctypes.Structure):
