@@ -1,3 +1,4 @@
 //! Claims about the statistics, by subject.
 
 mod acceptance;
+mod universe;
