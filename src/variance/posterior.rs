@@ -97,8 +97,14 @@ fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f
         for axis in 0..count {
             for end in 0..2 {
                 let edge = range[axis][end];
+                // The ridge at b_g = p, that no f_NL ends, is thinner than the places are apart.
+                let on_ridge = if axis == 1 && free.numbers()[1] == 2 && fit.value.p > 0.0 {
+                    likelihood.at(&Bias { b_g: fit.value.p, f_nl: 0.0, ..fit.value })
+                } else {
+                    f64::INFINITY
+                };
                 let lowest_there =
-                    (0..places).map(|i| chi_squared(&range, axis, edge, i)).fold(f64::INFINITY, f64::min);
+                    (0..places).map(|i| chi_squared(&range, axis, edge, i)).fold(on_ridge, f64::min);
                 least = least.min(lowest_there);
                 if lowest_there < least + REACH && edge > lowest(axis) {
                     let step = 0.25 * (range[axis][1] - range[axis][0]);

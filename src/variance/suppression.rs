@@ -48,8 +48,11 @@ const PLACES: usize = 160;
 const MARGIN: f64 = 100.0;
 /// Golden sections: 0.618^44 of a grid step.
 const SECTIONS: usize = 44;
-/// Rounds in which errors follow the model.
+/// Rounds in which errors follow the model, until it moves by less in units of them.
 const ROUNDS: usize = 100;
+const SETTLED: f64 = 1e-6;
+/// What k_soft does to the model must be more than its roundings.
+const FLAT: f64 = 1e-11;
 
 impl Scatter<'_> {
     fn check(&self) -> Result<()> {
@@ -128,7 +131,7 @@ impl Scatter<'_> {
     fn finish(&self, value: Suppression, error: &dyn Fn(usize) -> f64) -> Result<SuppressionFit> {
         let unknowns = self.unknowns();
         let mut triangle = Triangle::<4>::EMPTY;
-        let mut chi_squared = 0.0;
+        let (mut chi_squared, mut flat) = (0.0, true);
         for i in 0..self.sigma.len() {
             let (k, root) = (self.k[i], sqrt(2.0 / self.modes[i]));
             let Suppression { cosmic_variance, softening, .. } = value;
@@ -141,7 +144,11 @@ impl Scatter<'_> {
                 rest,
             ];
             triangle.push(row.map(|x| x / error(i)));
+            flat &= (softening * row[1]).abs() <= FLAT * self.sigma[i];
             chi_squared += (rest / error(i)) * (rest / error(i));
+        }
+        if flat {
+            return Err(Error::Singular);
         }
         let inverse = triangle.covariance(unknowns)?;
         let covariance: [f64; 9] = core::array::from_fn(|at| inverse[at / 3][at % 3]);
@@ -194,11 +201,11 @@ pub fn fit_suppression(scatter: &Scatter<'_>, estimates: u64) -> Result<Suppress
         // A model that is negative somewhere on the way has an error all the same.
         let error = |i: usize| relative * scatter.model(&last, i).abs().max(1e-3 * scatter.sigma[i]);
         value = scatter.search(&error)?;
-        let moved = |new: f64, old: f64| (new - old).abs() <= 1e-7 * (new.abs() + old.abs());
-        let settled = moved(value.cosmic_variance, last.cosmic_variance)
-            && moved(value.softening, last.softening)
-            && moved(value.shot_noise, last.shot_noise);
-        if settled {
+        let settled = |i: usize| {
+            let [new, old] = [&value, &last].map(|at| scatter.model(at, i));
+            (new - old).abs() <= SETTLED * error(i)
+        };
+        if (0..scatter.sigma.len()).all(settled) {
             return scatter.finish(value, &error);
         }
     }
