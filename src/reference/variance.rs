@@ -88,6 +88,7 @@ pub(crate) fn chi_squared(data: &[f64], model: &[f64], sigma: &[f64]) -> f64 {
 }
 
 /// (d - m)^T C^-1 (d - m).
+#[cfg(feature = "linalg")]
 pub(crate) fn chi_squared_full(data: &[f64], model: &[f64], covariance: &[f64]) -> f64 {
     let rest: Vec<f64> = data.iter().zip(model).map(|(d, m)| d - m).collect();
     product(&rest, &product(&inverse(covariance, rest.len()), &rest, rest.len()), rest.len())[0]
@@ -120,6 +121,7 @@ pub(crate) fn lattice_modes(edges: &[u64]) -> Vec<u64> {
 }
 
 /// Mean, covariance and B of `carpool`, by its formula.
+#[cfg(feature = "linalg")]
 pub(crate) fn carpool(
     y: &[f64],
     c: &[f64],

@@ -1,5 +1,4 @@
 //! CARPool against its formula, and against the truth.
-#![cfg(feature = "linalg")]
 
 use std::vec;
 use std::vec::Vec;

@@ -3,6 +3,7 @@
 mod acceptance;
 
 mod bias;
+#[cfg(feature = "linalg")]
 mod carpool;
 mod contours;
 mod control;
