@@ -65,7 +65,6 @@ fn over_realisations(
         let (y, c) = matched(draws, count, rho);
         let mu = 2.0 + error * draws.normal();
         let found = control_variate(&y, &c, mu, error, beta).unwrap();
-        // Of a difference the truth is shifted by beta (2 - mu), of mu alone.
         shifts.push(found.mean - 5.0);
         squares.push((found.mean - 5.0).powi(2));
         errors.push(found.error.powi(2));

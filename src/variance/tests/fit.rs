@@ -45,7 +45,6 @@ fn exact_data_return_the_truth_from_anywhere() {
                 }
                 let fit = bias_fit(&likelihood, &start, mask).unwrap();
                 let (found, truth) = (all(&fit.value), all(&TRUTH));
-                // Alone, f_NL has a second minimum where b(k) is turned around; see the next test.
                 assert!(
                     (0..3).all(|i| (found[i] - truth[i]).abs() < 1e-9 * truth[i]),
                     "{spectrum:?} {mask}: {start:?} {fit:?}"
