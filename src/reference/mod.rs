@@ -10,4 +10,5 @@ pub(crate) mod force;
 pub(crate) mod kick;
 pub(crate) mod power;
 pub(crate) mod transform;
+pub(crate) mod variance;
 pub(crate) mod white;

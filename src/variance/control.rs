@@ -41,7 +41,7 @@ pub struct ControlVariate {
 /// `mu`, `error`: expectation of c, and its standard error; 0 if it is exact. N_c cheap simulations of their own give s_c/sqrt(N_c).
 ///
 /// The error is that of a regression: with beta from the samples the scatter about the line has N - 2 degrees of freedom, and the error includes that of the slope,
-/// s sqrt(1/N + (<c> - mu)^2/S_cc): on average (N - 2)/(N - 3) times s^2/N. With a given beta it is s/sqrt(N). beta^2 error^2 is added to the square of both.
+/// s sqrt(1/N + (<c> - mu)^2/S) with S = (N - 1) (var(c) + N error^2): on average (N - 2)/(N - 3) times s^2/N. With a given beta it is s/sqrt(N). beta^2 error^2 is added to the square of both.
 ///
 /// # Errors
 /// `Length` for lists of different lengths, `Samples` for fewer than two, or four for [`Beta::Optimal`], `NotFinite`, `Range` for a negative error or a sum that overflows, `Singular` where
@@ -52,18 +52,20 @@ pub fn control_variate(y: &[f64], c: &[f64], mu: f64, error: f64, beta: Beta) ->
     not_negative(&[error])?;
     let correlation = moments.correlation()?;
     let Moments { count, mean, squares } = moments;
+    // (N - 1) (var(c) + N error^2): a mu that is hardly known has a small slope, of a small error.
+    let spread = squares[1] + count * (count - 1.0) * error * error;
     let (slope, lost) = match beta {
         Beta::Given(beta) => {
             finite(&[beta])?;
             (beta, 1.0)
         }
         Beta::Optimal if count < 4.0 => return Err(Error::Samples),
-        Beta::Optimal => (squares[2] / (squares[1] + count * (count - 1.0) * error * error), 2.0),
+        Beta::Optimal => (squares[2] / spread, 2.0),
     };
     let rest: f64 =
         y.iter().zip(c).map(|(y, c)| (y - mean[0]) - slope * (c - mean[1])).map(|rest| rest * rest).sum();
     let apart = mean[1] - mu;
-    let of_slope = if beta == Beta::Optimal { apart * apart / squares[1] } else { 0.0 };
+    let of_slope = if beta == Beta::Optimal { apart * apart / spread } else { 0.0 };
     let variance = rest / (count - lost);
     let square = result(variance * (1.0 / count + of_slope) + slope * slope * error * error)?;
     let plain = squares[0] / (count - 1.0) / count;

@@ -1,8 +1,8 @@
 //! Mean, variance, covariance and cross-covariance of samples that come one at a time.
 //!
 //! A state in the caller's memory holds the number of samples, their mean, and sums of squares about the mean (Welford 1962); states of
-//! different processes merge (Chan, Golub & LeVeque 1979). Rounding errors do not grow with the mean over the deviation, as those of
-//! sums of squares about zero do. A state is plain numbers: it may be copied, saved, and sent through MPI as it is.
+//! different processes merge (Chan, Golub & LeVeque 1979). Rounding errors grow with the mean over the deviation at most, as those
+//! of the samples themselves do, and not with its square, as those of sums of squares about zero. A state is plain numbers: it may be copied, saved, and sent through MPI as it is.
 //!
 //! Several statistics vectors whose cross-covariances are wanted are one sample, one after another: every block of the covariance
 //! can be read.

@@ -49,10 +49,16 @@ impl Grid {
     }
 }
 
-/// The i-th of so many values from the first to the last.
+/// The i-th of so many values from the first to the last, which are there to the bit.
 #[inline]
 fn at([low, high]: [f64; 2], points: usize, i: usize) -> f64 {
-    if points == 1 { low } else { low + (high - low) * (i as f64 / (points - 1) as f64) }
+    if i == 0 {
+        low
+    } else if i == points - 1 {
+        high
+    } else {
+        low + (high - low) * (i as f64 / (points - 1) as f64)
+    }
 }
 
 /// Where the free parameters' posterior is: a range of each, in the order b_g, p, f_NL, beyond which the density is below exp(-12.5) of its peak.
@@ -97,8 +103,14 @@ fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f
         for axis in 0..count {
             for end in 0..2 {
                 let edge = range[axis][end];
+                // The ridge at b_g = p, that no f_NL ends, is thinner than the places are apart.
+                let on_ridge = if axis == 1 && free.numbers()[1] == 2 && fit.value.p > 0.0 {
+                    likelihood.at(&Bias { b_g: fit.value.p, f_nl: 0.0, ..fit.value })
+                } else {
+                    f64::INFINITY
+                };
                 let lowest_there =
-                    (0..places).map(|i| chi_squared(&range, axis, edge, i)).fold(f64::INFINITY, f64::min);
+                    (0..places).map(|i| chi_squared(&range, axis, edge, i)).fold(on_ridge, f64::min);
                 least = least.min(lowest_there);
                 if lowest_there < least + REACH && edge > lowest(axis) {
                     let step = 0.25 * (range[axis][1] - range[axis][0]);

@@ -10,6 +10,12 @@ use crate::status::{Error, Result};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Triangle<const N: usize>(pub(super) [[f64; N]; N]);
 
+/// sqrt(a^2 + b^2). The slow way only where squares over- or underflow.
+fn length(a: f64, b: f64) -> f64 {
+    let square = a * a + b * b;
+    if (1e-280..1e280).contains(&square) { sqrt(square) } else { libm::hypot(a, b) }
+}
+
 impl<const N: usize> Triangle<N> {
     pub(super) const EMPTY: Self = Self([[0.0; N]; N]);
 
@@ -19,7 +25,7 @@ impl<const N: usize> Triangle<N> {
             if row[i] == 0.0 {
                 continue;
             }
-            let length = libm::hypot(pivot[i], row[i]);
+            let length = length(pivot[i], row[i]);
             let (cosine, sine) = (pivot[i] / length, row[i] / length);
             for j in i..N {
                 let (above, below) = (pivot[j], row[j]);

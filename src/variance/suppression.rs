@@ -48,8 +48,11 @@ const PLACES: usize = 160;
 const MARGIN: f64 = 100.0;
 /// Golden sections: 0.618^44 of a grid step.
 const SECTIONS: usize = 44;
-/// Rounds in which errors follow the model.
+/// Rounds in which errors follow the model, until it moves by less in units of them.
 const ROUNDS: usize = 100;
+const SETTLED: f64 = 1e-6;
+/// What k_soft does to the model must be more than its roundings.
+const FLAT: f64 = 1e-11;
 
 impl Scatter<'_> {
     fn check(&self) -> Result<()> {
@@ -88,17 +91,21 @@ impl Scatter<'_> {
         Ok((Suppression { cosmic_variance, softening, shot_noise }, triangle.0[2][2] * triangle.0[2][2]))
     }
 
-    /// The best k_soft.
-    fn search(&self, error: &dyn Fn(usize) -> f64) -> Result<Suppression> {
+    /// Where k_soft is looked for: the first and last ln k_soft, and the step of the grid.
+    fn places(&self) -> [f64; 3] {
         let [low, high] =
             self.k.iter().fold([f64::INFINITY, 0.0], |[low, high], &k| [k.min(low), k.max(high)]);
         let (first, last) = (libm::log(low / MARGIN), libm::log(high * MARGIN));
-        let place = |i: usize| first + (last - first) * i as f64 / (PLACES - 1) as f64;
-        // At the ends of the grid R_cv and f_sn may be degenerate to rounding: no minimum there.
-        let chi_squared = |place: f64| self.linear(libm::exp(place), error).map_or(f64::INFINITY, |(_, x)| x);
+        [first, last, (last - first) / (PLACES - 1) as f64]
+    }
+
+    /// The best of all k_soft.
+    fn search(&self, error: &dyn Fn(usize) -> f64) -> Result<Suppression> {
+        let [first, _, step] = self.places();
+        let place = |i: usize| first + step * i as f64;
         let mut best = (0, f64::INFINITY);
         for i in 0..PLACES {
-            let x = chi_squared(place(i));
+            let x = self.chi_squared(place(i), error);
             if x < best.1 {
                 best = (i, x);
             }
@@ -107,8 +114,27 @@ impl Scatter<'_> {
             // No step in the data.
             return Err(Error::Singular);
         }
+        self.between(place(best.0 - 1), place(best.0 + 1), error)
+    }
+
+    /// The best near an earlier one, or of all where that is not far enough.
+    fn follow(&self, last: &Suppression, error: &dyn Fn(usize) -> f64) -> Result<Suppression> {
+        let [_, _, step] = self.places();
+        let centre = libm::log(last.softening);
+        let found = self.between(centre - step, centre + step, error)?;
+        let moved = (libm::log(found.softening) - centre).abs();
+        if moved < 0.9 * step { Ok(found) } else { self.search(error) }
+    }
+
+    /// At the ends of the grid R_cv and f_sn may be degenerate to rounding: no minimum there.
+    fn chi_squared(&self, place: f64, error: &dyn Fn(usize) -> f64) -> f64 {
+        self.linear(libm::exp(place), error).map_or(f64::INFINITY, |(_, x)| x)
+    }
+
+    /// The minimum between two values of ln k_soft, by golden sections.
+    fn between(&self, mut left: f64, mut right: f64, error: &dyn Fn(usize) -> f64) -> Result<Suppression> {
         const GOLDEN: f64 = 0.618_033_988_749_894_8;
-        let (mut left, mut right) = (place(best.0 - 1), place(best.0 + 1));
+        let chi_squared = |place: f64| self.chi_squared(place, error);
         let mut inner = [right - GOLDEN * (right - left), left + GOLDEN * (right - left)];
         let mut values = inner.map(chi_squared);
         for _ in 0..SECTIONS {
@@ -128,7 +154,7 @@ impl Scatter<'_> {
     fn finish(&self, value: Suppression, error: &dyn Fn(usize) -> f64) -> Result<SuppressionFit> {
         let unknowns = self.unknowns();
         let mut triangle = Triangle::<4>::EMPTY;
-        let mut chi_squared = 0.0;
+        let (mut chi_squared, mut flat) = (0.0, true);
         for i in 0..self.sigma.len() {
             let (k, root) = (self.k[i], sqrt(2.0 / self.modes[i]));
             let Suppression { cosmic_variance, softening, .. } = value;
@@ -141,7 +167,11 @@ impl Scatter<'_> {
                 rest,
             ];
             triangle.push(row.map(|x| x / error(i)));
+            flat &= (softening * row[1]).abs() <= FLAT * self.sigma[i];
             chi_squared += (rest / error(i)) * (rest / error(i));
+        }
+        if flat {
+            return Err(Error::Singular);
         }
         let inverse = triangle.covariance(unknowns)?;
         let covariance: [f64; 9] = core::array::from_fn(|at| inverse[at / 3][at % 3]);
@@ -193,12 +223,12 @@ pub fn fit_suppression(scatter: &Scatter<'_>, estimates: u64) -> Result<Suppress
         let last = value;
         // A model that is negative somewhere on the way has an error all the same.
         let error = |i: usize| relative * scatter.model(&last, i).abs().max(1e-3 * scatter.sigma[i]);
-        value = scatter.search(&error)?;
-        let moved = |new: f64, old: f64| (new - old).abs() <= 1e-7 * (new.abs() + old.abs());
-        let settled = moved(value.cosmic_variance, last.cosmic_variance)
-            && moved(value.softening, last.softening)
-            && moved(value.shot_noise, last.shot_noise);
-        if settled {
+        value = scatter.follow(&last, &error)?;
+        let settled = |i: usize| {
+            let [new, old] = [&value, &last].map(|at| scatter.model(at, i));
+            (new - old).abs() <= SETTLED * error(i)
+        };
+        if (0..scatter.sigma.len()).all(settled) {
             return scatter.finish(value, &error);
         }
     }
