@@ -135,6 +135,7 @@ static int check_constraints(struct checker *checker, int t) {
     const struct fixpair_difference *d = &type->difference;
     const char *name = matched_report_types[t];
     double seeds = (double)checker->matched->seeds, error = checker->deviation_error, root = sqrt(seeds), volume, gain, loss;
+    double beta = expected->correlation * expected->sigma[1] / expected->sigma[0];
     check_mean(checker, name, "<f0>", d->mean_second, d->deviation_second / root, expected->f_nl[0]);
     check_mean(checker, name, "<f1>", d->mean_first, d->deviation_first / root, expected->f_nl[1]);
     check_mean(checker, name, "<f1 - f0>", d->mean, d->error_of_mean, expected->f_nl[1] - expected->f_nl[0]);
@@ -156,11 +157,11 @@ static int check_constraints(struct checker *checker, int t) {
     check_size(checker, name, "V_eff/V, matched", type->matched_volume, ratio_error, volume);
 
     /* 1 - rho^2 is known to 2 rho/sqrt(N - 1) of itself. */
-    TRY(fixpair_control_variate_gain(&gain, expected->sigma[1], expected->sigma[0], expected->correlation,
-                                     expected->correlation * expected->sigma[1] / expected->sigma[0]));
+    TRY(fixpair_control_variate_gain(&gain, expected->sigma[1], expected->sigma[0], expected->correlation, beta));
     TRY(fixpair_control_variate_loss(&loss, checker->matched->seeds, 1));
     check_size(checker, name, "gain of optimal beta", type->control.gain, 2.0 / sqrt(seeds - 1.0), gain / loss);
-    check_mean(checker, name, "f1 of optimal beta", type->control.mean, type->control.error, expected->f_nl[1]);
+    /* Peaks of wide posteriors are not quite at f_NL, as the control supposes of those at f_NL = 0. */
+    check_mean(checker, name, "f1 of optimal beta", type->control.mean, type->control.error, expected->f_nl[1] - beta * expected->f_nl[0]);
     check_mean(checker, name, "p from f1 - f0", type->p[1], type->p_deviation[1] / root, checker->choice->bias.p);
     return 0;
 }

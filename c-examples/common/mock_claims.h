@@ -11,8 +11,8 @@
 #include "mock_spectra.h"
 
 /*
- * Prints claims and adds those that fail to *failures. Each allows three standard errors: with mocks of another random number one in 370
- * fails by chance. Returns 0, or 1 after saying what is wrong.
+ * Prints claims and adds those that fail to *failures. Each allows three standard errors: of mocks of other random numbers some in a
+ * thousand fail by chance. Returns 0, or 1 after saying what is wrong.
  */
 int mock_claims_check(const struct constraints *constraints, const struct matched *matched, const struct mock_truth *truth,
                       const struct mock_choice *choice, int *failures);
