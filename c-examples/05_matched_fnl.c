@@ -24,6 +24,9 @@
 #include "mock_claims.h"
 #include "mock_spectra.h"
 
+/* From the folder of the library, or from this one. */
+static const char *const usual_tables[] = {"examples/data/camb_goliat_linear.txt", "../examples/data/camb_goliat_linear.txt"};
+
 #define SIGMA8 0.8 /* of transfer functions, which have no amplitude; alpha does not depend on it */
 
 struct options {
@@ -43,7 +46,7 @@ static void help(FILE *stream) {
           "k [h/Mpc], modes, linear P [(Mpc/h)^3], P of halos less shot noise [(Mpc/h)^3], halos; as the example goliat writes power_z1.csv.\n\n"
           "  --box L           Mpc/h; default: 1000\n"
           "  --redshift Z      of the halos; default: 1\n"
-          "  --linear FILE     CAMB's or CLASS's P(k) or T(k) at z = 0; default: examples/data/camb_goliat_linear.txt\n"
+          "  --linear FILE     CAMB's or CLASS's P(k) or T(k) at z = 0; default: the library's own, camb_goliat_linear.txt\n"
           "  --omega-m O       of that file; default: 0.27. Flat\n"
           "  --n-s N           of that file; default: 0.96\n"
           "  --lss             f_NL in the LSS convention, not in that of the CMB\n"
@@ -117,7 +120,9 @@ static int read_options(struct options *options, int argc, char **argv) {
     memset(options, 0, sizeof *options);
     if (constraints_choice_init(&options->analysis) != 0 || mock_choice_init(&options->universe) != 0) return 1 + EXIT_FAILURE;
     options->box_size = options->universe.box_size;
-    options->linear = "examples/data/camb_goliat_linear.txt";
+    FILE *table = fopen(usual_tables[1], "r");
+    options->linear = usual_tables[table != NULL];
+    if (table != NULL) fclose(table);
     for (i = 1; i < argc && strncmp(argv[i], "--", 2) == 0; i++) {
         if (strcmp(argv[i], "--help") == 0) {
             help(stdout);
@@ -138,8 +143,13 @@ static int read_options(struct options *options, int argc, char **argv) {
     }
     options->files = argv + i;
     options->files_len = (size_t)(argc - i);
+    for (; i < argc; i++) {
+        if (strncmp(argv[i], "--", 2) != 0) continue;
+        fprintf(stderr, "%s: options come before tables\n", argv[i]);
+        return 1 + EXIT_FAILURE;
+    }
     if (options->mock == (options->files_len == 0) && (options->mock || options->write == NULL)) return 0;
-    fprintf(stderr, "either tables, after all options, or --mock, which alone can --write\n\n");
+    fprintf(stderr, "either tables or --mock, which alone can --write\n\n");
     help(stderr);
     return 1 + EXIT_FAILURE;
 }
@@ -155,7 +165,6 @@ struct work {
     int failures;
 };
 
-/* Spectra of mocks have no scale but that of their box: the same for every choice of the analysis. */
 static int draw(struct work *work) {
     const struct constraints_choice *analysis = &work->options.analysis;
     struct mock_choice *universe = &work->options.universe;

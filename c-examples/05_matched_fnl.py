@@ -132,13 +132,18 @@ def read_matched(paths, box):
                              "in every type: add it, or take the seed out")
                 columns = list(zip(*sorted(simulations[key])))
                 bins = bins or columns[:3]
-                if bins != columns[:3]:
-                    sys.exit(f"seed {seed}, {amplitude} {phase}, f_NL = {f_nl[half]:g}: other bins than other simulations: bin all alike")
+                if bins != columns[:3] or any(k >= after for k, after in zip(bins[0], bins[0][1:])):
+                    sys.exit(f"seed {seed}, {amplitude} {phase}, f_NL = {f_nl[half]:g}: other bins than other simulations, or twice in the table")
                 rows += columns[3]
                 halos[half] += columns[4][0]
             power[amplitude, phase, half] = doubles(rows)
     k, modes, linear = map(doubles, bins)
     halos = [total / (len(types) * len(seeds)) for total in halos]
+    # Modes up to the last bin fill a sphere of the box's own grid: N = V k^3/(6 pi^2).
+    half_width = 0.5 * (k[-1] - k[0]) / (len(k) - 1)
+    volume = sum(modes) * 6.0 * math.pi ** 2 / ((k[-1] + half_width) ** 3 - (k[0] - half_width) ** 3)
+    if abs(volume / box ** 3 - 1.0) >= 0.25:
+        sys.exit(f"k and modes are those of a box of {volume ** (1.0 / 3.0):.0f} Mpc/h, not of {box:g}: say --box. (Modes count k and -k.)")
     return SimpleNamespace(box=box, seeds=seeds, bins=len(k), f_nl=f_nl, k=k, modes=modes, linear=linear, halos=halos, power=power)
 
 
@@ -229,8 +234,12 @@ class Analysis:
             half.used = half.theory
             return half
         half.fit = SuppressionFit()
-        fixpair.fit_suppression(byref(half.fit), half.sigma, None, matched.k, half.mean, matched.modes, self.scatter_bins, noise, seeds)
-        fixpair.sigma_suppressed(half.used, byref(half.fit.value), matched.k, half.mean, matched.modes, bins, noise)
+        try:
+            fixpair.fit_suppression(byref(half.fit), half.sigma, None, matched.k, half.mean, matched.modes, self.scatter_bins, noise, seeds)
+            fixpair.sigma_suppressed(half.used, byref(half.fit.value), matched.k, half.mean, matched.modes, bins, noise)
+        except ValueError as error:
+            sys.exit(f"{error}; the scatter of the {found.name} simulations is not that of Eq. sigma_fix: fit f_NL with what was measured, "
+                     "--measured")
         half.used = doubles([sigma / math.sqrt(found.simulations) for sigma in half.used])
         return half
 
@@ -472,12 +481,15 @@ def main():
     parser.add_argument("--measured", action="store_true", help="fit f_NL with the measured scatter")
     parser.add_argument("--table", metavar="FILE", help="write all numbers as CSV")
     choice = parser.parse_args()
-    linear, arrays = read_linear(choice.linear)
-    analysis = Analysis(Library(choice.library), read_matched(choice.tables, choice.box), choice, linear)
-    del arrays
-    print_report(analysis)
-    if choice.table:
-        write_report(analysis, choice.table)
+    try:
+        linear, arrays = read_linear(choice.linear)
+        analysis = Analysis(Library(choice.library), read_matched(choice.tables, choice.box), choice, linear)
+        del arrays
+        print_report(analysis)
+        if choice.table:
+            write_report(analysis, choice.table)
+    except (OSError, ValueError) as error:
+        sys.exit(str(error))
 
 
 if __name__ == "__main__":

@@ -62,13 +62,22 @@ static int moments(double *mean, double *deviation, const double *first, const d
     return 0;
 }
 
-static int fit_scatter(struct constraints_half *half, const struct matched *matched, size_t bins, double noise, const char *name) {
+/* Eq. sigma_fix for `type`: fitted, and then in `used` as the scatter of one estimate. */
+static int fit_scatter(struct constraints_half *half, const struct constraints_type *type, const struct matched *matched, size_t bins,
+                       double noise) {
     int32_t status = fixpair_fit_suppression(&half->fit, half->sigma, NULL, matched->k, half->mean, matched->modes, bins, noise,
                                              matched->seeds);
-    if (status >= 0) return 0;
-    report_status(__FILE__, __LINE__, status);
-    fprintf(stderr, "the scatter of the %s simulations is not that of Eq. sigma_fix; fit f_NL with what was measured: --measured\n", name);
-    return 1;
+    if (status == 0) {
+        status = fixpair_sigma_suppressed(half->used, &half->fit.value, matched->k, half->mean, matched->modes, matched->bins, noise);
+    }
+    if (status < 0) {
+        report_status(__FILE__, __LINE__, status);
+        fprintf(stderr, "the scatter of the fixed simulations%s is not that of Eq. sigma_fix; fit f_NL with what was measured: --measured\n",
+                type->simulations == 2 ? "' pairs" : "");
+        return 1;
+    }
+    for (size_t b = 0; b < matched->bins; b++) half->used[b] /= sqrt((double)type->simulations);
+    return 0;
 }
 
 /* All spectra of one type and half. */
@@ -101,10 +110,7 @@ static int measure(struct constraints *constraints, int type, int half_number, c
         memcpy(half->used, half->theory, bins * sizeof *half->used);
         return 0;
     }
-    TRY(fit_scatter(half, matched, constraints->scatter_bins, noise, is_paired(type) ? "paired fixed" : "fixed"));
-    TRY(fixpair_sigma_suppressed(half->used, &half->fit.value, matched->k, half->mean, matched->modes, bins, noise));
-    for (size_t b = 0; b < bins; b++) half->used[b] /= sqrt((double)constraints->type[type].simulations);
-    return 0;
+    return fit_scatter(half, &constraints->type[type], matched, constraints->scatter_bins, noise);
 }
 
 /* ---- Fits of f_NL. */

@@ -123,16 +123,6 @@ static int same_simulation(const struct row *a, const struct row *b) {
     return same_type(a, b) && a->f_nl == b->f_nl && a->seed == b->seed;
 }
 
-/* How many simulations, from row `first` of the first bin of each on, differ in nothing but the seed. */
-static size_t count_seeds(const struct rows *rows, size_t first, size_t bins) {
-    size_t seeds = 0;
-    const struct row *row = rows->row + first;
-    for (size_t i = first; i < rows->count; i += bins, seeds++) {
-        if (!same_type(rows->row + i, row) || rows->row[i].f_nl != row->f_nl) break;
-    }
-    return seeds;
-}
-
 static int complain(const struct row *row, const char *what) {
     fprintf(stderr, "seed %llu, %s %s, f_NL = %g: %s\n", (unsigned long long)row->seed, matched_amplitudes[row->amplitude],
             matched_phases[row->phase], row->f_nl, what);
@@ -162,23 +152,45 @@ static int check_bins(const struct rows *rows, size_t *bins) {
     return 1;
 }
 
-/* Copies what is of one type and half, at rows from `first` on; there must be as many seeds as everywhere, and the same. */
-static int take_simulations(struct matched *matched, const struct rows *rows, size_t first, int half) {
-    const struct row *row = rows->row + first;
-    size_t seeds = count_seeds(rows, first, matched->bins);
-    if (row->f_nl != matched->f_nl[half]) return complain(row, "no such f_NL elsewhere, or the other one is missing for this type");
-    for (size_t s = 0; s < matched->seeds || s < seeds; s++, row += matched->bins) {
-        if (s == seeds || (s < matched->seeds && row->seed > matched->seed[s])) {
-            struct row missing = rows->row[first];
-            missing.seed = matched->seed[s];
-            return complain(&missing, "missing. Matching needs every seed at both f_NL and in every type: add it, or take the seed out");
+/* All seeds of the table, each once and increasing: as many as are returned. */
+static size_t list_seeds(uint64_t *seed, const struct rows *rows, size_t bins) {
+    size_t seeds = 0;
+    for (size_t i = 0; i < rows->count; i += bins) {
+        size_t place = 0;
+        while (place < seeds && seed[place] < rows->row[i].seed) place++;
+        if (place < seeds && seed[place] == rows->row[i].seed) continue;
+        memmove(seed + place + 1, seed + place, (seeds - place) * sizeof *seed);
+        seed[place] = rows->row[i].seed;
+        seeds++;
+    }
+    return seeds;
+}
+
+/* 0 and another one. */
+static int find_halves(double f_nl[2], const struct rows *rows) {
+    int found = 0;
+    f_nl[0] = f_nl[1] = 0.0;
+    for (size_t i = 0; i < rows->count; i++) {
+        double value = rows->row[i].f_nl;
+        if (f_nl[1] == 0.0) f_nl[1] = value;
+        found = found || value == 0.0;
+        if (value != 0.0 && value != f_nl[1]) return complain(rows->row + i, "a third f_NL; matched are two, 0 and another");
+    }
+    if (found && f_nl[1] != 0.0) return 0;
+    return complain(rows->row, "and no other f_NL in the table. Matched are the same seeds at two: at 0, where estimates are known whatever "
+                               "p is, and at another");
+}
+
+/* Copies the simulations of one type and half, which follow each other from *i on, and moves *i to their end. */
+static int take_simulations(struct matched *matched, const struct rows *rows, size_t *i, int amplitude, int phase, int half) {
+    struct row wanted = {0, amplitude, phase, matched->f_nl[half], 0.0, 0.0, 0.0, 0.0, 0.0};
+    for (size_t s = 0; s < matched->seeds; s++, *i += matched->bins) {
+        const struct row *row = rows->row + *i;
+        wanted.seed = matched->seed[s];
+        if (*i == rows->count || !same_simulation(row, &wanted)) {
+            return complain(&wanted, "missing. Matching needs every seed at both f_NL and in every type: add it, or take the seed out");
         }
-        if (s == matched->seeds || row->seed != matched->seed[s]) {
-            return complain(row, "a seed that other types do not have. Matching needs it everywhere: add it there, or take it out here");
-        }
-        for (size_t b = 0; b < matched->bins; b++) {
-            matched->power[row->amplitude][row->phase][half][s * matched->bins + b] = row[b].power;
-        }
+        for (size_t b = 0; b < matched->bins; b++) matched->power[amplitude][phase][half][s * matched->bins + b] = row[b].power;
         matched->halos[half] += row->halos;
     }
     return 0;
@@ -199,46 +211,43 @@ static int check_box(const struct matched *matched) {
 }
 
 static int arrange(struct matched *matched, struct rows *rows, double box_size) {
-    size_t bins, simulations[2] = {0, 0};
+    size_t bins, types = 0, place = 0;
     int present[2][2] = {{0, 0}, {0, 0}};
+    double f_nl[2];
     if (rows->count == 0) {
         fprintf(stderr, "there is no simulation in the table\n");
         return 1;
     }
     qsort(rows->row, rows->count, sizeof *rows->row, by_simulation);
-    if (check_bins(rows, &bins) != 0) return 1;
+    if (check_bins(rows, &bins) != 0 || find_halves(f_nl, rows) != 0) return 1;
     for (size_t i = 0; i < rows->count; i++) present[rows->row[i].amplitude][rows->row[i].phase] = 1;
-    size_t seeds = count_seeds(rows, 0, bins), second = seeds * bins;
-    if (second == rows->count || !same_type(rows->row + second, rows->row)) {
-        return complain(rows->row, "one f_NL only for this type. Matched simulations are those of the same seed at two: 0 and another");
-    }
-    if (rows->row[0].f_nl != 0.0) {
-        fprintf(stderr, "no simulation has f_NL = 0, the one value whose estimates are known whatever p is; matching needs it\n");
-        return 1;
-    }
+    uint64_t *seed = malloc(rows->count / bins * sizeof *seed);
+    if (seed == NULL) return 1;
+    size_t seeds = list_seeds(seed, rows, bins);
+    int broken = matched_open(matched, seeds, bins, present);
+    if (!broken) memcpy(matched->seed, seed, seeds * sizeof *seed);
+    free(seed);
+    if (broken) return 1;
     if (seeds < FEWEST_SEEDS) {
         fprintf(stderr, "%lu seeds are too few for a scatter; run %d at least. (It is known to 1/sqrt(2 (N - 1)): 27%% from 8, 11%% from 41.)\n",
                 (unsigned long)seeds, (int)FEWEST_SEEDS);
         return 1;
     }
-    if (matched_open(matched, seeds, bins, present) != 0) return 1;
     matched->box_size = box_size;
-    matched->f_nl[0] = rows->row[0].f_nl;
-    matched->f_nl[1] = rows->row[second].f_nl;
-    for (size_t s = 0; s < seeds; s++) matched->seed[s] = rows->row[s * bins].seed;
+    memcpy(matched->f_nl, f_nl, sizeof f_nl);
     for (size_t b = 0; b < bins; b++) {
         matched->k[b] = rows->row[b].k;
         matched->modes[b] = rows->row[b].modes;
         matched->linear[b] = rows->row[b].linear;
     }
-    int half = 0;
-    for (size_t first = 0; first < rows->count; half = !half) {
-        if (take_simulations(matched, rows, first, half) != 0) return 1;
-        simulations[half] += seeds;
-        first += seeds * bins;
+    for (int type = 0; type < 4; type++) {
+        if (!present[type / 2][type % 2]) continue;
+        types++;
+        for (int half = 0; half < 2; half++) {
+            if (take_simulations(matched, rows, &place, type / 2, type % 2, half) != 0) return 1;
+        }
     }
-    if (half == 1) return complain(rows->row + rows->count - 1, "one f_NL only for this type");
-    for (half = 0; half < 2; half++) matched->halos[half] /= (double)simulations[half];
+    for (int half = 0; half < 2; half++) matched->halos[half] /= (double)(types * seeds);
     return check_box(matched);
 }
 
