@@ -128,12 +128,13 @@ def read_matched(paths, box):
             for seed in seeds:
                 key = (amplitude, phase, f_nl[half], seed)
                 if key not in simulations:
-                    sys.exit(f"seed {seed}, {amplitude} {phase}, f_NL = {f_nl[half]:g}: missing. Matching needs every seed at both f_NL and "
-                             "in every type: add it, or take the seed out")
+                    sys.exit(f"seed {seed}, {amplitude} {phase}, f_NL = {f_nl[half]:g}: missing. Matching needs every seed at both f_NL "
+                             "and in every type: add it, or take the seed out")
                 columns = list(zip(*sorted(simulations[key])))
                 bins = bins or columns[:3]
                 if bins != columns[:3] or any(k >= after for k, after in zip(bins[0], bins[0][1:])):
-                    sys.exit(f"seed {seed}, {amplitude} {phase}, f_NL = {f_nl[half]:g}: other bins than other simulations, or twice in the table")
+                    sys.exit(f"seed {seed}, {amplitude} {phase}, f_NL = {f_nl[half]:g}: other bins than other simulations, or twice in "
+                             "the table")
                 rows += columns[3]
                 halos[half] += columns[4][0]
             power[amplitude, phase, half] = doubles(rows)
@@ -372,7 +373,8 @@ def print_row(found):
 
 
 def print_table(analysis):
-    print("\nf_NL of each simulation or pair, mean +- scatter; of the mean spectrum; V_eff/V over a Normal simulation by scatter [by the mean]")
+    print("\nf_NL of each simulation or pair, mean +- scatter; of the mean spectrum; V_eff/V over a Normal simulation by scatter "
+          "[by the mean]")
     print("%-14s %-15s  %-15s  %-15s  %-15s  %12s  %5s  %-14s  %-14s  %12s" % (
         "", "  <f0> +- std", "  Mean", "  <f1> +- std", "  Mean", "V_eff/V", "rho", " <f1 - f0>", " Gaussian", "V_eff/V"))
     for found in fitted(analysis):

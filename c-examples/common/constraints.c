@@ -72,8 +72,8 @@ static int fit_scatter(struct constraints_half *half, const struct constraints_t
     }
     if (status < 0) {
         report_status(__FILE__, __LINE__, status);
-        fprintf(stderr, "the scatter of the fixed simulations%s is not that of Eq. sigma_fix; fit f_NL with what was measured: --measured\n",
-                type->simulations == 2 ? "' pairs" : "");
+        fprintf(stderr, "the scatter of %s is not that of Eq. sigma_fix; fit f_NL with what was measured: --measured\n",
+                type->simulations == 2 ? "pairs of fixed simulations" : "fixed simulations");
         return 1;
     }
     for (size_t b = 0; b < matched->bins; b++) half->used[b] /= sqrt((double)type->simulations);

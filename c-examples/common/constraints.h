@@ -14,8 +14,9 @@
 #include "fixpair.h"
 #include "matched.h"
 
-/* Types. The last one has no advantage, which is to be seen in its scatter; f_NL is not fitted to it. */
-enum { CONSTRAINTS_NORMAL, CONSTRAINTS_FIXED, CONSTRAINTS_FIXED_PAIRED, CONSTRAINTS_FITTED, CONSTRAINTS_NORMAL_PAIRED = 3, CONSTRAINTS_TYPES };
+/* Types: those that f_NL is fitted to, and one that has no advantage, as its scatter shows. */
+enum { CONSTRAINTS_NORMAL, CONSTRAINTS_FIXED, CONSTRAINTS_FIXED_PAIRED, CONSTRAINTS_NORMAL_PAIRED, CONSTRAINTS_TYPES };
+enum { CONSTRAINTS_FITTED = CONSTRAINTS_NORMAL_PAIRED }; /* how many of them */
 
 struct constraints_choice {
     struct fixpair_cosmology cosmology;
@@ -48,7 +49,7 @@ struct constraints_type {
     struct constraints_half half[2];
     struct fixpair_difference difference; /* f100 - f0 */
     double gauss, gauss_sigma;            /* the difference of both on_mean, and its scatter by Eq. correlation */
-    /* V_eff/V over one Normal simulation that is not matched, by the scatter of f_NL, with its error, and by on_mean; NAN without Normal. */
+    /* V_eff/V over a Normal simulation that is not matched, by the scatter of f_NL, with its error, and by on_mean; NAN without Normal. */
     double volume, volume_error, volume_on_mean;                         /* f100 */
     double matched_volume, matched_volume_error, matched_volume_on_mean; /* the difference */
     struct fixpair_control_variate control; /* f100 less the optimal beta times f0 */

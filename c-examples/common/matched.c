@@ -177,8 +177,8 @@ static int find_halves(double f_nl[2], const struct rows *rows) {
         if (value != 0.0 && value != f_nl[1]) return complain(rows->row + i, "a third f_NL; matched are two, 0 and another");
     }
     if (found && f_nl[1] != 0.0) return 0;
-    return complain(rows->row, "and no other f_NL in the table. Matched are the same seeds at two: at 0, where estimates are known whatever "
-                               "p is, and at another");
+    return complain(rows->row, "and no other f_NL in the table. Matched are the same seeds at two: at 0, where estimates are known "
+                               "whatever p is, and at another");
 }
 
 /* Copies the simulations of one type and half, which follow each other from *i on, and moves *i to their end. */
@@ -229,8 +229,8 @@ static int arrange(struct matched *matched, struct rows *rows, double box_size) 
     free(seed);
     if (broken) return 1;
     if (seeds < FEWEST_SEEDS) {
-        fprintf(stderr, "%lu seeds are too few for a scatter; run %d at least. (It is known to 1/sqrt(2 (N - 1)): 27%% from 8, 11%% from 41.)\n",
-                (unsigned long)seeds, (int)FEWEST_SEEDS);
+        fprintf(stderr, "%lu seeds are too few for a scatter; run %d at least. (It is known to 1/sqrt(2 (N - 1)): 27%% from 8, 11%% from "
+                "41.)\n", (unsigned long)seeds, (int)FEWEST_SEEDS);
         return 1;
     }
     matched->box_size = box_size;

@@ -86,9 +86,10 @@ static void print_row(const struct constraints_type *type, const char *name) {
 }
 
 static void print_table(const struct constraints *constraints, const struct matched *matched) {
-    printf("\nf_NL of each simulation or pair, mean +- scatter; of the mean spectrum; V_eff/V over a Normal simulation by scatter [by the mean]\n");
-    printf("%-14s %-15s  %-15s  %-15s  %-15s  %12s  %5s  %-14s  %-14s  %12s\n", "", "  <f0> +- std", "  Mean", "  <f1> +- std", "  Mean", "V_eff/V",
-           "rho", " <f1 - f0>", " Gaussian", "V_eff/V");
+    printf("\nf_NL of each simulation or pair, mean +- scatter; of the mean spectrum; V_eff/V over a Normal simulation by scatter "
+           "[by the mean]\n");
+    printf("%-14s %-15s  %-15s  %-15s  %-15s  %12s  %5s  %-14s  %-14s  %12s\n", "", "  <f0> +- std", "  Mean", "  <f1> +- std", "  Mean",
+           "V_eff/V", "rho", " <f1 - f0>", " Gaussian", "V_eff/V");
     for (int t = 0; t < CONSTRAINTS_FITTED; t++) {
         if (constraints->type[t].present) print_row(&constraints->type[t], matched_report_types[t]);
     }
@@ -166,7 +167,8 @@ static void write_half(const struct writer *writer, const struct constraints_hal
     write_line(writer, NAN, "peak of the mean", half->on_mean.peak, NAN);
 }
 
-static void write_type(const struct writer *zero, const struct writer *one, const struct writer *both, const struct constraints_type *type) {
+static void write_type(const struct writer *zero, const struct writer *one, const struct writer *both,
+                       const struct constraints_type *type) {
     const struct fixpair_difference *d = &type->difference;
     write_line(zero, NAN, "<f> +- std", d->mean_second, d->deviation_second);
     write_line(one, NAN, "<f> +- std", d->mean_first, d->deviation_first);

@@ -88,8 +88,8 @@ static int expect(struct checker *checker, int type, double *work) {
 
 static void check_mean(struct checker *checker, const char *type, const char *what, double mean, double error, double expected) {
     double off = (mean - expected) / error;
-    checker->failures += claim(fabs(off) < TOLERANCE, "%-13s %-22s %8.3f +- %.3f, %8.3f expected: off by %.1f errors", type, what, mean, error,
-                               expected, off);
+    checker->failures += claim(fabs(off) < TOLERANCE, "%-13s %-22s %8.3f +- %.3f, %8.3f expected: off by %.1f errors", type, what, mean,
+                               error, expected, off);
 }
 
 /* `error` is relative. */
