@@ -396,6 +396,11 @@ def print_worth(analysis):
         print("%-14s %7.2f +- %5.2f %7.2f +- %5.2f  %8.2f  %6.3f %7.2f +- %5.2f  %8.2f  %6.3f +- %5.3f  %6.3f +- %5.3f" % (
             found.name, d.mean_first, d.deviation_first / math.sqrt(seeds), d.mean, d.error_of_mean, found.difference_gain, control.beta,
             control.mean, control.error, control.gain, *found.p[0], *found.p[1]))
+    for found in fitted(analysis):
+        off = found.difference.mean_second / (found.difference.deviation_second / math.sqrt(seeds))
+        if abs(off) >= 3.0:
+            print("%s: <f0> is %.1f errors from the 0 that the optimal beta supposes. Does the model hold up to the highest k? Trust beta = 1,\n"
+                  "from which drops out what both share" % (found.name, off))
     print("\nErrors of V_eff/V, by bootstrap over seeds")
     for found in fitted(analysis):
         if found.name != NORMAL and not math.isnan(found.volume[0]):

@@ -17,6 +17,7 @@
 /* Types: those that f_NL is fitted to, and one that has no advantage, as its scatter shows. */
 enum { CONSTRAINTS_NORMAL, CONSTRAINTS_FIXED, CONSTRAINTS_FIXED_PAIRED, CONSTRAINTS_NORMAL_PAIRED, CONSTRAINTS_TYPES };
 enum { CONSTRAINTS_FITTED = CONSTRAINTS_NORMAL_PAIRED }; /* how many of them */
+enum { CONSTRAINTS_BLOCKS = 1 + 16 * CONSTRAINTS_TYPES }; /* of memory, at most */
 
 struct constraints_choice {
     struct fixpair_cosmology cosmology;
@@ -61,7 +62,7 @@ struct constraints {
     struct constraints_type type[CONSTRAINTS_TYPES];
     double *alpha;
     size_t scatter_bins, bias_bins; /* how many of the bins, from the first on, each fit takes */
-    void *blocks[64];               /* of memory */
+    void *blocks[CONSTRAINTS_BLOCKS]; /* of memory */
     size_t blocks_len;
 };
 
