@@ -2,8 +2,9 @@
 
     python3 05_matched_fnl.py [options] TABLE...      --help
 
-Standard library only. The functions take any array of doubles that ctypes knows; of a numpy array in C order pass `a.ctypes.data`. The
-numbers are those of the C program, to the last digit.
+Standard library only. Arrays are those of ctypes; `(Double * a.size).from_buffer(a)` is one that shares the memory of a numpy array of
+doubles in C order, and where a function of the library alone is called, `a.ctypes.data` will do. The numbers are those of the C program, to
+the last digit.
 """
 
 import argparse
@@ -399,8 +400,8 @@ def print_worth(analysis):
     for found in fitted(analysis):
         off = found.difference.mean_second / (found.difference.deviation_second / math.sqrt(seeds))
         if abs(off) >= 3.0:
-            print("%s: <f0> is %.1f errors from the 0 that the optimal beta supposes. Does the model hold up to the highest k? Trust beta = 1,\n"
-                  "from which drops out what both share" % (found.name, off))
+            print("%s: <f0> is %.1f errors from the 0 that the optimal beta supposes. Does the model hold up to the highest k?\n"
+                  "Trust beta = 1, from which drops out what both share" % (found.name, off))
     print("\nErrors of V_eff/V, by bootstrap over seeds")
     for found in fitted(analysis):
         if found.name != NORMAL and not math.isnan(found.volume[0]):

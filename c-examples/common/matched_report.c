@@ -114,8 +114,8 @@ static void print_worth(const struct constraints *constraints, const struct matc
         if (!constraints->type[t].present) continue;
         double off = d->mean_second / (d->deviation_second / sqrt((double)matched->seeds));
         if (fabs(off) < 3.0) continue;
-        printf("%s: <f0> is %.1f errors from the 0 that the optimal beta supposes. Does the model hold up to the highest k? Trust beta = 1,\n"
-               "from which drops out what both share\n", matched_report_types[t], off);
+        printf("%s: <f0> is %.1f errors from the 0 that the optimal beta supposes. Does the model hold up to the highest k?\n"
+               "Trust beta = 1, from which drops out what both share\n", matched_report_types[t], off);
     }
     printf("\nErrors of V_eff/V, by bootstrap over seeds\n");
     for (int t = CONSTRAINTS_FIXED; t < CONSTRAINTS_FITTED; t++) {
