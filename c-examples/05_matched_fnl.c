@@ -57,7 +57,7 @@ static void help(FILE *stream) {
           "  --table FILE      write all numbers as CSV\n\n"
           "  --mock            draw spectra: V = 1 (Gpc/h)^3, n = 2.5e-4, b_g = 2.32, f_NL = 0 and 100, scatter of tab:fits\n"
           "  --seeds N         how many; default: 41\n"
-          "  --random R        other draws; default: 1\n"
+          "  --random R        other draws; default: 1. Claims allow 3 errors: in every fourth set of draws one of all fails by chance\n"
           "  --p P             of the mocks' halos; default: 0.9. The analysis supposes p = 1, as the paper's\n"
           "  --write FILE      write the mocks as such a TABLE\n",
           stream);
