@@ -4033,7 +4033,8 @@ fixpair_status_t fixpair_sigma_gaussian(double *sigma,
  * In:  suppression  R_cv, k_soft, f_sn
  *      k            len wavenumbers, in the unit of k_soft
  *      power, modes, noise as for fixpair_sigma_gaussian
- * Returns: as fixpair_sigma_gaussian; FIXPAIR_ERROR_RANGE for k or k_soft that is not positive, negative R_cv or f_sn
+ * Returns: as fixpair_sigma_gaussian; FIXPAIR_ERROR_RANGE for k, k_soft or a sigma that is not positive. R_cv and f_sn may be negative, as those of fits to few
+ *          simulations are within their errors
  */
 fixpair_status_t fixpair_sigma_suppressed(double *sigma,
                                           const struct fixpair_suppression *suppression,
