@@ -218,7 +218,8 @@ fn refused_samples_leave_the_state_as_it_was() {
         assert_eq!(refused(&[f64::NEG_INFINITY, 2.0, 3.0]), Error::NotFinite);
         assert_eq!(refused(&[1.0, -1e141, 3.0]), Error::Range);
         assert_eq!(refused(&[1.0, 2.0]), Error::Length);
-        assert_eq!(refused(&[]), Error::Length);
+        assert_eq!(refused(&[1.0, 2.0, 3.0, 4.0]), Error::Length);
+        assert_eq!(refused(&[1.0, 2.0, 3.0, 4.0, 5.0, f64::INFINITY]), Error::NotFinite);
         let other = if moments == Moments::Variance { Moments::Covariance } else { Moments::Variance };
         let mut merged = |from: &[f64]| ensemble_merge(&mut state, from).unwrap_err();
         assert_eq!(merged(&state_of(&rows, 3, other)), Error::Length);
