@@ -92,8 +92,7 @@ pub unsafe extern "C" fn fixpair_sigma_gaussian(
 /// In:  suppression  R_cv, k_soft, f_sn
 ///      k            len wavenumbers, in the unit of k_soft
 ///      power, modes, noise as for fixpair_sigma_gaussian
-/// Returns: as fixpair_sigma_gaussian; FIXPAIR_ERROR_RANGE for k, k_soft or a sigma that is not positive. R_cv and f_sn may be negative, as those of fits to few
-///          simulations are within their errors
+/// Returns: as fixpair_sigma_gaussian; FIXPAIR_ERROR_RANGE for k or k_soft that is not positive, negative R_cv or f_sn
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.

@@ -108,7 +108,7 @@ impl Suppression {
 
     pub(super) fn check(&self) -> Result<()> {
         positive(&[self.softening])?;
-        finite(&[self.cosmic_variance, self.shot_noise])
+        not_negative(&[self.cosmic_variance, self.shot_noise])
     }
 }
 
@@ -119,11 +119,10 @@ pub(super) fn step(k: f64, softening: f64) -> f64 {
 
 /// sigma_r (Eq. sigma_fix with the plus).
 ///
-/// `k`: of each bin, h/Mpc. `power`, `modes`, `noise`: as [`sigma_gaussian`]. R_cv and f_sn may be negative, as fits to the scatter of few simulations
-/// are within their errors, wherever sigma_r is positive.
+/// `k`: of each bin, h/Mpc. `power`, `modes`, `noise`: as [`sigma_gaussian`].
 ///
 /// # Errors
-/// As [`sigma_gaussian`]; `Range` for k, k_soft or sigma_r that is not positive.
+/// As [`sigma_gaussian`]; `Range` for k or k_soft that is not positive, and for negative R_cv or f_sn.
 pub fn sigma_suppressed(
     out: &mut [f64],
     suppression: &Suppression,

@@ -101,17 +101,6 @@ fn sigma_of_tab_fits_with_the_plus_sign() {
     assert!((none[0] / sigma[0] - 1.0).abs() < 1e-15);
 }
 
-/// Fits to few simulations give such values: their curve is what the fit was asked for.
-#[test]
-fn negative_cosmic_variance_is_taken_where_scatter_is_positive() {
-    let fit = Suppression { cosmic_variance: -0.2, softening: 0.04, shot_noise: 1.3 };
-    let mut sigma = [0.0];
-    sigma_suppressed(&mut sigma, &fit, &[0.04], &[1e4], &[50.0], 4000.0).unwrap();
-    // At k_soft the step is 1/2: R_cv + (1 - R_cv)/2 = 0.4.
-    assert!((sigma[0] - 0.2 * (0.4 * 1e4 + 1.3 * 4000.0)).abs() < 1e-9);
-    assert_eq!(sigma_suppressed(&mut sigma, &fit, &[1e-3], &[1e5], &[50.0], 4000.0), Err(Error::Range));
-}
-
 #[test]
 fn floor_shells_have_26_66_158_234_410_470_modes() {
     let mut counts = [0; 6];
