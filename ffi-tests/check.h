@@ -75,10 +75,12 @@ static inline uint64_t hash_brick(uint64_t hash, const void *data, const fixpair
     return hash;
 }
 
+enum { MOST_CASES = 512 };
+
 static struct {
     char name[64];
     uint64_t hash;
-} cases[256];
+} cases[MOST_CASES];
 static size_t case_count = 0;
 
 /* Reads the cases that the Rust interface computed. */
@@ -89,7 +91,7 @@ static inline void read_cases(const char *path) {
         printf("cannot open %s\n", path);
         exit(2);
     }
-    while (case_count < 256 && fscanf(file, "%63s %llx", cases[case_count].name, &hash) == 2) {
+    while (case_count < MOST_CASES && fscanf(file, "%63s %llx", cases[case_count].name, &hash) == 2) {
         cases[case_count++].hash = (uint64_t)hash;
     }
     fclose(file);

@@ -83,7 +83,7 @@ static fixpair_brick brick(void) {
 }
 
 static void sane(fixpair_status_t status) {
-    CHECK(status <= 0 && status >= FIXPAIR_ERROR_STOPPED);
+    CHECK(status <= 0 && status >= FIXPAIR_ERROR_SINGULAR);
 }
 
 static void meshes(double *data, float *single) {

@@ -138,8 +138,9 @@ fn descend(likelihood: &BiasLikelihood, start: &Bias, free: &Free) -> Result<(Bi
                 return Ok((at, chi_squared));
             }
         } else if moved < small {
-            // Rounding decides which of the two is lower.
-            return Ok((at, chi_squared));
+            // Rounding decides which of the two is lower; but downhill may lie beyond b_g = 0.
+            let bounded = free.b_g() && trial <= chi_squared;
+            return if bounded { Err(Error::Convergence) } else { Ok((at, chi_squared)) };
         } else {
             damping *= 10.0;
         }
