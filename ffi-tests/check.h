@@ -57,6 +57,13 @@ static inline uint64_t hash_bytes(uint64_t hash, const void *data, size_t size) 
     return hash;
 }
 
+static inline uint64_t hash_layout(uint64_t hash, fixpair_layout layout) {
+    uint64_t numbers[2];
+    numbers[0] = layout.size;
+    numbers[1] = layout.align;
+    return hash_bytes(hash, numbers, sizeof numbers);
+}
+
 /* The elements of `size` bytes of a brick, in the order of their indices. */
 static inline uint64_t hash_brick(uint64_t hash, const void *data, const fixpair_brick *brick, size_t size) {
     const size_t *s = brick->stride;

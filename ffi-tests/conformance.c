@@ -18,13 +18,6 @@ static void check_named(const char *name, const char *kind, const char *suffix, 
     check_case(full, hash);
 }
 
-static uint64_t hash_layout(uint64_t hash, fixpair_layout layout) {
-    uint64_t numbers[2];
-    numbers[0] = layout.size;
-    numbers[1] = layout.align;
-    return hash_bytes(hash, numbers, sizeof numbers);
-}
-
 enum { BRICKS = 5 };
 static const char *const brick_names[BRICKS] = {"whole", "padded", "slab", "transposed", "general"};
 

@@ -1,5 +1,5 @@
 /*
- * The part of conformance.c about statistics: ensembles, scatter, bias and f_NL, matched simulations, matrices.
+ * The part of conformance.c about statistics: ensembles, scatter, bias and f_NL, matched simulations, matrices. For host.cpp too.
  */
 
 enum { VALUES = 5, SAMPLES = 12, FIRST = 7, BINS = 14, HALO_HALO = 9, CONTROLS = 3, SIDE = 40, DOWN = 20, ACROSS = 30, WIDE = 64 };

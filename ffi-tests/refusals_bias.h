@@ -268,7 +268,7 @@ static void refuse_constraints(void) {
     STRUCT(0, OUT, fixpair_bias_fit);
     argument(1, OUT, 2 * sizeof(fixpair_posterior), sizeof(double));
     likelihood = likelihood_at(2, IN);
-    bias_at(3);
+    start = bias_at(3);
     SCRATCH_OF(4, layout.size);
     length(0, 2, EXACT);
     t.a.n[1] = 16;
@@ -283,18 +283,19 @@ static void refuse_constraints(void) {
     REFUSED(FIXPAIR_ERROR_SCRATCH, t.a.n[1] = 8192);
     refuse_not_positive(&t.a.d[0]);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.d[0] = 1.0);
-    REFUSED(FIXPAIR_ERROR_CONVERGENCE, *likelihood = likelihood_of(1000.0, 2.32));
+    /* Where b_g = p cannot be excluded, f_NL may be anything. */
+    REFUSED(FIXPAIR_ERROR_CONVERGENCE, (start->p = 0.0, *likelihood = likelihood_of(1000.0, 2.32)));
 
     begin("bias_range", call_bias_range);
     ARRAY(0, OUT, double, 4);
     likelihood = likelihood_at(1, IN);
-    bias_at(2);
+    start = bias_at(2);
     length(0, 2, EXACT);
     t.a.u = FIXPAIR_FREE_B_G | FIXPAIR_FREE_F_NL;
     refuse_pointers_and_lengths();
     refuse_fits(1);
     REFUSED(FIXPAIR_ERROR_LENGTH, t.a.u = FIXPAIR_FREE_B_G);
-    REFUSED(FIXPAIR_ERROR_CONVERGENCE, *likelihood = likelihood_of(1000.0, 2.32));
+    REFUSED(FIXPAIR_ERROR_CONVERGENCE, (start->p = 0.0, *likelihood = likelihood_of(1000.0, 2.32)));
 
     begin("bias_grid", call_bias_grid);
     ARRAY(0, OUT, double, 20);
