@@ -312,7 +312,9 @@ static void ids(void) {
 #include "refusals_bins.h"
 #include "refusals_steps.h"
 #include "refusals_variance.h"
+#include "refusals_scatter.h"
 #include "refusals_bias.h"
+#include "refusals_posterior.h"
 #include "refusals_matched.h"
 
 #define REAL float

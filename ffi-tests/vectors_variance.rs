@@ -75,7 +75,8 @@ fn samples() -> (Vec<f64>, Vec<f64>) {
 
 fn ensembles(cases: &mut Cases, y: &[f64], c: &[f64]) -> Vec<f64> {
     let both = [Moments::Variance, Moments::Covariance];
-    let lengths = both.iter().flat_map(|&of| (1..=10).map(move |n| ensemble_length(n, of).expect("a length")));
+    let lengths =
+        both.iter().flat_map(|&of| (1..=10).map(move |n| ensemble_length(n, of).expect("a length")));
     cases.add("ensemble_length", Hash::new().integers(&lengths.map(|n| n as u64).collect::<Vec<_>>()));
     let mut hash = Hash::new();
     let mut state = Vec::new();
@@ -161,8 +162,7 @@ impl Bins {
 }
 
 fn of_fit(hash: Hash, fit: &SuppressionFit) -> Hash {
-    let triples =
-        [fit.value, fit.error].map(|s: Suppression| [s.cosmic_variance, s.softening, s.shot_noise]);
+    let triples = [fit.value, fit.error].map(|s: Suppression| [s.cosmic_variance, s.softening, s.shot_noise]);
     let hash = hash.doubles(triples.as_flattened()).doubles(&fit.covariance);
     hash.doubles(&[fit.chi_squared]).integers(&[fit.degrees])
 }
@@ -285,8 +285,8 @@ fn posteriors(cases: &mut Cases, likelihood: &BiasLikelihood) {
     bias_range(&mut range, likelihood, &START, FREE_B_G | FREE_F_NL).expect("a range");
     cases.add("bias_range", Hash::new().doubles(range.as_flattened()));
     let mut grid = vec![0.0; POINTS[0] * POINTS[1]];
-    let where_ = Grid { range, points: POINTS };
-    bias_grid(&mut grid, likelihood, &START, FREE_B_G | FREE_F_NL, &where_).expect("chi^2");
+    let places = Grid { range, points: POINTS };
+    bias_grid(&mut grid, likelihood, &START, FREE_B_G | FREE_F_NL, &places).expect("chi^2");
     cases.add("bias_grid", Hash::new().doubles(&grid));
     let (mut densities, mut read) = (Hash::new(), Hash::new());
     for axis in 0..2 {
@@ -306,7 +306,8 @@ fn posteriors(cases: &mut Cases, likelihood: &BiasLikelihood) {
     contours(&mut segments, &grid, POINTS, range, level).expect("a contour");
     assert!(count > 4, "a contour closes");
     cases.add("contours", Hash::new().integers(&[count as u64]).doubles(segments.as_flattened()));
-    let factors = [hartlap_factor(41, 14), percival_factor(41, 14, 2)].map(|factor| factor.expect("a factor"));
+    let factors =
+        [hartlap_factor(41, 14), percival_factor(41, 14, 2)].map(|factor| factor.expect("a factor"));
     cases.add("factors", Hash::new().doubles(&factors));
 }
 
@@ -340,11 +341,13 @@ fn matched(cases: &mut Cases, y: &[f64], c: &[f64]) {
     cases.add("matched_numbers", Hash::new().doubles(&numbers));
     let layout = control_variates_scratch(SAMPLES).expect("scratch");
     let mut memory = Memory::new(layout);
-    let nothing = ControlVariate { mean: 0.0, error: 0.0, beta: 0.0, correlation: 0.0, deviation: 0.0, gain: 0.0 };
+    let nothing =
+        ControlVariate { mean: 0.0, error: 0.0, beta: 0.0, correlation: 0.0, deviation: 0.0, gain: 0.0 };
     let mut values = [nothing; VALUES];
     let (mu, error): ([f64; VALUES], [f64; VALUES]) = (core::array::from_fn(mu), [0.125; VALUES]);
     let mut hash = sizes(Hash::new(), layout);
-    for (error, beta) in [(None, Beta::Given(1.0)), (None, Beta::Optimal), (Some(&error[..]), Beta::Optimal)] {
+    for (error, beta) in [(None, Beta::Given(1.0)), (None, Beta::Optimal), (Some(&error[..]), Beta::Optimal)]
+    {
         control_variates(&mut values, y, c, &mu, error, beta, memory.bytes(layout.size)).expect("a mean");
         hash = of_controls(hash, &values);
     }
@@ -367,7 +370,8 @@ fn matrices(cases: &mut Cases, y: &[f64], c: &[f64]) {
 
     let layout = carpool_scratch(VALUES, CONTROLS).expect("scratch");
     let mut memory = Memory::new(layout);
-    let controls: Vec<f64> = (0..SAMPLES * CONTROLS).map(|i| c[i / CONTROLS * VALUES + i % CONTROLS]).collect();
+    let controls: Vec<f64> =
+        (0..SAMPLES * CONTROLS).map(|i| c[i / CONTROLS * VALUES + i % CONTROLS]).collect();
     let mu: [f64; CONTROLS] = core::array::from_fn(mu);
     let mut of_mu = [0.0; CONTROLS * CONTROLS];
     for i in 0..CONTROLS {

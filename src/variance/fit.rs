@@ -138,14 +138,23 @@ fn descend(likelihood: &BiasLikelihood, start: &Bias, free: &Free) -> Result<(Bi
                 return Ok((at, chi_squared));
             }
         } else if moved < small {
-            // Rounding decides which of the two is lower; but downhill may lie beyond b_g = 0.
-            let bounded = free.b_g() && trial <= chi_squared;
-            return if bounded { Err(Error::Convergence) } else { Ok((at, chi_squared)) };
+            // Rounding decides which of the two is lower.
+            return Ok((at, chi_squared));
         } else {
             damping *= 10.0;
         }
     }
     Err(Error::Convergence)
+}
+
+/// A descent that was held at b_g = 0, with downhill beyond, found no minimum.
+fn check_inside(likelihood: &BiasLikelihood, at: &Bias, free: &Free) -> Result<()> {
+    if free.b_g() {
+        let step = linearised(likelihood, at, free).solve(free.numbers().len())?;
+        let beyond = at.b_g + step[0] <= 0.0;
+        return if beyond { Err(Error::Convergence) } else { Ok(()) };
+    }
+    Ok(())
 }
 
 /// The lowest of the minima that are found from `start` and from the bias that fits best without f_NL.
@@ -164,7 +173,9 @@ pub(super) fn minimum(likelihood: &BiasLikelihood, start: &Bias, free: &Free) ->
         if free.b_g() && !positive {
             continue;
         }
-        match (descend(likelihood, &place, free), best) {
+        let found = descend(likelihood, &place, free);
+        let found = found.and_then(|of| check_inside(likelihood, &of.0, free).map(|()| of));
+        match (found, best) {
             (Ok(new), Ok(old)) if old.1 <= new.1 => best = Ok(old),
             (Ok(new), _) => best = Ok(new),
             (Err(error), Err(_)) => best = Err(error),

@@ -74,7 +74,7 @@ impl BiasLikelihood {
     /// Adds bins that do not correlate, each with its sigma (Eq. chi2).
     ///
     /// # Errors
-    /// `Length` for arrays of different lengths, `NotFinite`, `Range` for sigma, P_lin or alpha that is not positive, or numbers too extreme.
+    /// `Length` for arrays of different lengths, `NotFinite`, `Range` for sigma, P_lin or alpha that is not positive, `self` that no data have made, or numbers too extreme.
     pub fn add(&mut self, spectrum: Spectrum, spectra: Spectra<'_>, sigma: &[f64]) -> Result<()> {
         self.check()?;
         spectra.check()?;

@@ -269,7 +269,8 @@ pub fn read_posterior(density: &[f64], range: [f64; 2], probability: f64) -> Res
         half_width: 0.5 * (high - low),
         edge: density[0].max(density[points - 1]) / unit,
     };
-    finite(&[read.peak, mean, deviation, low, high, read.centre, read.half_width]).map_err(|_| Error::Range)?;
+    finite(&[read.peak, mean, deviation, low, high, read.centre, read.half_width])
+        .map_err(|_| Error::Range)?;
     Ok(read)
 }
 
