@@ -114,7 +114,8 @@ static void biases_and_posteriors(double *scratch) {
     fixpair_bias_fit fit;
     fixpair_posterior posterior[2];
     fixpair_layout layout;
-    double power[MOST], sigma[MOST], linear[MOST], alpha[MOST], root[MOST * MOST], out[2 * MOST], ranges[4] = {0.0, 1.0, 0.0, 1.0}, grid[64], segments[4 * 64];
+    double power[MOST], sigma[MOST], linear[MOST], alpha[MOST], root[MOST * MOST], out[2 * MOST], grid[64], segments[4 * 64];
+    double ranges[4] = {0.0, 1.0, 0.0, 1.0};
     const double *members = (const double *)(const void *)&fit;
     double value;
     fixpair_status_t status;
