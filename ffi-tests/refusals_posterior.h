@@ -165,6 +165,7 @@ static void refuse_densities(void) {
     refuse_pointers_and_lengths();
     ACCEPTED(values[0] = values[4] = 0.0);
     ACCEPTED(values[0] = values[1] = values[3] = values[4] = 0.0);
+    ACCEPTED((memset(values, 0, 5 * sizeof *values), values[2] = DBL_MIN * DBL_EPSILON));
     refuse_negative(values + 4);
     refuse_infinite(&t.a.d[0]);
     refuse_infinite(&t.a.d[1]);
