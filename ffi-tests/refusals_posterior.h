@@ -87,6 +87,7 @@ static void refuse_constraints(void) {
     refuse_not_positive(&t.a.d[0]);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.d[0] = 1.0);
     /* Where b_g = p cannot be excluded, f_NL may be anything. */
+    REFUSED(FIXPAIR_ERROR_CONVERGENCE, *likelihood = likelihood_of(27.0, 2.32));
     REFUSED(FIXPAIR_ERROR_CONVERGENCE, (start->p = 0.0, *likelihood = likelihood_of(1000.0, 2.32)));
 
     begin("bias_range", call_bias_range);
@@ -98,6 +99,7 @@ static void refuse_constraints(void) {
     refuse_pointers_and_lengths();
     refuse_fits(1);
     REFUSED(FIXPAIR_ERROR_LENGTH, t.a.u = FIXPAIR_FREE_B_G);
+    REFUSED(FIXPAIR_ERROR_CONVERGENCE, *likelihood = likelihood_of(27.0, 2.32));
     REFUSED(FIXPAIR_ERROR_CONVERGENCE, (start->p = 0.0, *likelihood = likelihood_of(1000.0, 2.32)));
 
     begin("bias_grid", call_bias_grid);

@@ -85,6 +85,11 @@ fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f
         range[axis] = [(centre[axis] - 5.0 * error).max(lowest(axis)), centre[axis] + 5.0 * error];
     }
     let mut least = fit.chi_squared;
+    // At b_g = p no f_NL changes anything: a posterior that has that place has no end, however narrow the way to it.
+    let blind = Bias { b_g: fit.value.p, ..fit.value };
+    if free.numbers() == [0, 2] && blind.b_g > 0.0 && likelihood.at(&blind) < least + REACH {
+        return Err(Error::Convergence);
+    }
     let places = if count == 2 { PLACES } else { 1 };
     let chi_squared = |range: &[[f64; 2]; 2], axis: usize, value: f64, place: usize| {
         let mut values = [value; 2];
