@@ -57,6 +57,13 @@ static inline uint64_t hash_bytes(uint64_t hash, const void *data, size_t size) 
     return hash;
 }
 
+static inline uint64_t hash_layout(uint64_t hash, fixpair_layout layout) {
+    uint64_t numbers[2];
+    numbers[0] = layout.size;
+    numbers[1] = layout.align;
+    return hash_bytes(hash, numbers, sizeof numbers);
+}
+
 /* The elements of `size` bytes of a brick, in the order of their indices. */
 static inline uint64_t hash_brick(uint64_t hash, const void *data, const fixpair_brick *brick, size_t size) {
     const size_t *s = brick->stride;
@@ -75,10 +82,12 @@ static inline uint64_t hash_brick(uint64_t hash, const void *data, const fixpair
     return hash;
 }
 
+enum { MOST_CASES = 512 };
+
 static struct {
     char name[64];
     uint64_t hash;
-} cases[256];
+} cases[MOST_CASES];
 static size_t case_count = 0;
 
 /* Reads the cases that the Rust interface computed. */
@@ -89,7 +98,7 @@ static inline void read_cases(const char *path) {
         printf("cannot open %s\n", path);
         exit(2);
     }
-    while (case_count < 256 && fscanf(file, "%63s %llx", cases[case_count].name, &hash) == 2) {
+    while (case_count < MOST_CASES && fscanf(file, "%63s %llx", cases[case_count].name, &hash) == 2) {
         cases[case_count++].hash = (uint64_t)hash;
     }
     fclose(file);

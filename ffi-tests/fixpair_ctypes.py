@@ -53,6 +53,19 @@ HaloSums = structure("HaloSums", label=c_uint64, members=c_uint64, reference=c_d
                      position=c_double * 3, position_squared=c_double, velocity=c_double * 3, velocity_squared=c_double,
                      low=c_double * 3, high=c_double * 3)
 Sphere = structure("Sphere", members=c_uint64, mass=c_double, radius=c_double)
+Suppression = structure("Suppression", cosmic_variance=c_double, softening=c_double, shot_noise=c_double)
+SuppressionFit = structure("SuppressionFit", value=Suppression, error=Suppression, covariance=c_double * 9,
+                           chi_squared=c_double, degrees=c_uint64)
+Bias = structure("Bias", b_g=c_double, p=c_double, f_nl=c_double, delta_c=c_double)
+Likelihood = structure("Likelihood", bins=c_uint64, root=c_double * 36)
+BiasFit = structure("BiasFit", value=Bias, error=c_double * 3, covariance=c_double * 9, chi_squared=c_double, degrees=c_uint64)
+Posterior = structure("Posterior", peak=c_double, mean=c_double, deviation=c_double, low=c_double, high=c_double,
+                      centre=c_double, half_width=c_double, edge=c_double)
+Difference = structure("Difference", mean_first=c_double, mean_second=c_double, deviation_first=c_double,
+                       deviation_second=c_double, correlation=c_double, correlation_error=c_double, mean=c_double,
+                       deviation=c_double, error_of_mean=c_double)
+ControlVariate = structure("ControlVariate", mean=c_double, error=c_double, beta=c_double, correlation=c_double,
+                           deviation=c_double, gain=c_double)
 
 CONFIGURATION, FOURIER = 0, 1
 NORMAL, FIXED, FIXED_TO_MEAN = 0, 1, 2
@@ -70,7 +83,11 @@ EXACT, TWO_POINT, FOUR_POINT = 0, 1, 2
 FASTPM, LEAPFROG, COLA = 0, 1, 2
 COLA_EXPONENT = -2.5
 EVENT_STEP, EVENT_OUTPUT = 0, 1
-STOPPED = -18
+STOPPED, SAMPLES, SINGULAR = -18, -19, -20
+VARIANCE, COVARIANCE = 0, 1
+HALO_HALO, HALO_MATTER = 0, 1
+FREE_B_G, FREE_P, FREE_F_NL = 1, 2, 4
+BETA_GIVEN, BETA_OPTIMAL = 0, 1
 
 # What a letter of a signature stands for: p pointer, n size, d double, i int32, w uint32, u uint64.
 LETTERS = {"p": c_void_p, "n": c_size_t, "d": c_double, "i": c_int32, "w": ctypes.c_uint32, "u": c_uint64}
@@ -93,6 +110,22 @@ SIGNATURES = {
     "linear_steps": "pndd", "logarithmic_steps": "pndd", "linking_length": "pddu", "particle_mass": "pddu",
     "overdensity": "pidpd", "fof_merge": "pnppn", "fof_relabel": "pnpnp", "halos_scratch": "pn", "halo_sums_merge": "pnpd",
     "halo_count": "ppnupnp", "halos_finish": "pnppndud",
+    "ensemble_length": "pni", "ensemble_init": "pnni", "ensemble_add": "pnpn", "ensemble_merge": "pnp", "ensemble_count": "ppn",
+    "ensemble_mean": "pnpn", "ensemble_deviation": "pnpn", "ensemble_error_of_mean": "pnpn",
+    "ensemble_covariance": "pnnpnnn", "ensemble_correlation": "pnnpnnn", "pair_average": "pppn",
+    "sigma_per_simulation": "pppnuu", "bootstrap_indices": "pnuuu", "resampled_mean": "pnpnpn", "jackknife_means": "ppnn",
+    "jackknife": "pppnpn", "jackknife_covariance": "ppnn", "continuum_modes": "ppndd", "lattice_modes": "ppn",
+    "sigma_gaussian": "pppnd", "sigma_suppressed": "pppppnd", "fit_suppression": "ppppppndu",
+    "ratio_of_means": "pppppppn", "difference_of_means": "ppppppppn", "bias_init": "p", "bias_of_k": "pppn",
+    "halo_power": "ppppni", "measured_bias": "pppppni", "likelihood_init": "p", "likelihood_add": "pppppni",
+    "likelihood_add_correlated_scratch": "pn", "likelihood_add_correlated": "pppppnndpn", "likelihood_merge": "pp",
+    "likelihood_chi_squared": "ppp", "fit_bias": "pppw", "bias_posterior_scratch": "pn", "bias_posterior": "ppnppwndpn",
+    "bias_range": "pnppw", "bias_grid": "pnppwppn", "marginal": "ppnnidd", "read_posterior": "ppnddd",
+    "contours": "pnppnnpd", "delta_chi_squared": "pdw", "hartlap_factor": "puu", "percival_factor": "puuu",
+    "matched_difference": "pppn", "difference_sigma": "pddd", "effective_volume": "pdudu", "universality": "ppdddddd",
+    "control_variates_scratch": "pn", "control_variates": "pnppnppidpn", "control_variate_gain": "pdddd",
+    "control_variate_loss": "puu", "covariance_root_scratch": "pn", "covariance_root": "ppnpn", "carpool_scratch": "pnn",
+    "carpool": "pppppnnppnpn",
     "bispectrum_normalise": "ppnndd", "bispectrum_shot_noise": "ppnpnd", "bispectrum_reduced": "pppnpn",
 }
 TWINS = {

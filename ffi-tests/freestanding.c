@@ -1,8 +1,9 @@
 /*
- * One initial condition where there is nothing, its power spectrum and bispectrum, and the halos that it grows into: no C library, no heap, no threads, no main. Linux on
+ * One initial condition where there is nothing, its power spectrum and bispectrum, the halos that it grows into, and f_NL from spectra of halos: no C library, no heap, no threads, no main. Linux on
  * x86-64; exits with 0 if the particles and their numbers are there, else with a number that says where it stopped.
  */
 #define FIXPAIR_NO_THREADS
+#define FIXPAIR_NO_LINALG
 #include "fixpair.h"
 
 enum { SIDE = 16, PARTICLES = SIDE * SIDE * SIDE, MEMORY = 1 << 22, SHELLS = 3, MOST = 10 };
@@ -225,6 +226,54 @@ static void evolve(const fixpair_fft_f32 *fft, const fixpair_components_f32 *x, 
                              NULL), 45);
 }
 
+/* An ensemble of spectra of halos with f_NL, and f_NL from its mean. */
+static void constrain(void) {
+    enum { BINS = 8, REALISATIONS = 32, STATE = 3 + 2 * BINS, POINTS = 32 };
+    const uint32_t free_ones = FIXPAIR_FREE_B_G | FIXPAIR_FREE_F_NL;
+    fixpair_bias halos, start;
+    fixpair_bias_likelihood likelihood;
+    fixpair_bias_fit fit;
+    fixpair_posterior posterior[2];
+    fixpair_layout layout;
+    double state[STATE], expected[BINS], power[BINS], mean[BINS], error[BINS], linear[BINS], alpha[BINS], apart;
+    uint64_t draws[BINS];
+    size_t length, i, b;
+    void *scratch;
+    must(fixpair_bias_init(&start), 46);
+    halos = start;
+    halos.b_g = 2.32;
+    halos.f_nl = 100.0;
+    for (b = 0; b < BINS; b++) {
+        linear[b] = 1e4 / (double)(b + 1);
+        alpha[b] = 500.0 * (double)((b + 1) * (b + 1));
+    }
+    must(fixpair_halo_power(expected, &halos, linear, alpha, BINS, FIXPAIR_SPECTRUM_HALO_HALO), 47);
+    must(fixpair_ensemble_length(&length, BINS, FIXPAIR_MOMENTS_VARIANCE), 48);
+    if (length != STATE) {
+        leave(49);
+    }
+    must(fixpair_ensemble_init(state, STATE, BINS, FIXPAIR_MOMENTS_VARIANCE), 50);
+    for (i = 0; i < REALISATIONS; i++) {
+        /* Uniform scatter of 10%. */
+        must(fixpair_bootstrap_indices(draws, BINS, 1000, 7, i), 51);
+        for (b = 0; b < BINS; b++) {
+            power[b] = expected[b] * (0.9 + 0.2 * (double)draws[b] / 1000.0);
+        }
+        must(fixpair_ensemble_add(state, STATE, power, BINS), 52);
+    }
+    must(fixpair_ensemble_mean(mean, BINS, state, STATE), 53);
+    must(fixpair_ensemble_error_of_mean(error, BINS, state, STATE), 54);
+    must(fixpair_likelihood_init(&likelihood), 55);
+    must(fixpair_likelihood_add(&likelihood, mean, error, linear, alpha, BINS, FIXPAIR_SPECTRUM_HALO_HALO), 56);
+    must(fixpair_bias_posterior_scratch(&layout, POINTS), 57);
+    scratch = piece(layout);
+    must(fixpair_bias_posterior(&fit, posterior, 2, &likelihood, &start, free_ones, POINTS, 0.68, scratch, layout.size), 58);
+    apart = (fit.value.f_nl - 100.0) / fit.error[2];
+    if (!(apart > -4.0 && apart < 4.0 && posterior[1].low < fit.value.f_nl && posterior[1].high > fit.value.f_nl)) {
+        leave(59);
+    }
+}
+
 static void make(void) {
     fixpair_conditions conditions;
     fixpair_fft_f32 fft;
@@ -264,6 +313,7 @@ static void make(void) {
     }
     measure(&fft);
     evolve(&fft, &x, &v);
+    constrain();
     leave(0);
 }
 

@@ -83,7 +83,7 @@ static fixpair_brick brick(void) {
 }
 
 static void sane(fixpair_status_t status) {
-    CHECK(status <= 0 && status >= FIXPAIR_ERROR_STOPPED);
+    CHECK(status <= 0 && status >= FIXPAIR_ERROR_SINGULAR);
 }
 
 static void meshes(double *data, float *single) {
@@ -205,6 +205,7 @@ static void universes(double *data, void *scratch, size_t scratch_len, const fix
 
 #include "fuzz_estimate.h"
 #include "fuzz_gravity.h"
+#include "fuzz_variance.h"
 
 int main(void) {
     double *data = (double *)take((2 * LENGTH + 2 * VALUES) * sizeof *data);
@@ -232,6 +233,7 @@ int main(void) {
         estimates(data, single, memory, sums);
         forces(data, single, memory);
         groups(data, memory);
+        statistics(memory);
         if (round % 8 == 0) {
             universes(data, scratch, layout.size, &fft);
             bispectra(data, memory, sums, &fft);

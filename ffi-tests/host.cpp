@@ -354,6 +354,7 @@ void two_ranks() {
 
 #include "host_estimate.h"
 #include "host_gravity.h"
+#include "host_variance.h"
 
 /* A few refusals, as a host in C++ meets them: as exceptions, with vectors untouched. */
 template <class T>
@@ -399,6 +400,7 @@ int main(int count, char **arguments) {
         clumps<float>(run);
         clumps<double>(run);
     }
+    statistics();
     two_ranks<float>();
     two_ranks<double>();
     refusals<float>();

@@ -13,3 +13,4 @@ mod vectors_gravity;
 mod vectors_halos;
 mod vectors_particles;
 mod vectors_real;
+mod vectors_variance;

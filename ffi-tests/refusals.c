@@ -311,6 +311,11 @@ static void ids(void) {
 
 #include "refusals_bins.h"
 #include "refusals_steps.h"
+#include "refusals_variance.h"
+#include "refusals_scatter.h"
+#include "refusals_bias.h"
+#include "refusals_posterior.h"
+#include "refusals_matched.h"
 
 #define REAL float
 #define X(name) name##_f32
@@ -370,6 +375,9 @@ int main(void) {
     factors_of_steps();
     densities_of_halos();
     groups_of_processes();
+    refuse_scatter();
+    refuse_bias();
+    refuse_matched();
     refuse_forces_f32();
     refuse_forces_f64();
     refuse_kicks_f32();

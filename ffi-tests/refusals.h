@@ -19,7 +19,7 @@ typedef struct {
     size_t n[LENGTHS];
     double d[6];
     int32_t i[2];
-    uint64_t u;
+    uint64_t u, v, w;
 } arguments;
 
 typedef fixpair_status_t (*call_function)(const arguments *);

@@ -10,6 +10,7 @@ import sys
 import ctypes_estimate
 import ctypes_gravity
 import ctypes_halos
+import ctypes_variance
 import fixpair_ctypes as fixpair
 from ctypes_check import (BOX, FINE, FINER, N, PADDING, ROWS, SEED, Buffer, array, check, claims, doubles, elements,
                           failures, fnv, integers, made, noise, parallel_for, triples)
@@ -47,8 +48,8 @@ class Universe:
 
     def scalars(self):
         library = self.library
-        self.case("status_message", *(library.status_message(-i) for i in range(19)))
-        check(b"unknown" in library.status_message(-19), "an unknown status has a message")
+        self.case("status_message", *(library.status_message(-i) for i in range(1 - fixpair.SINGULAR)))
+        check(b"unknown" in library.status_message(fixpair.SINGULAR - 1), "an unknown status has a message")
         self.case("version", library.version())
         block = (ctypes.c_uint32 * 4)()
         library.philox4x32_10(block, (ctypes.c_uint32 * 4)(1, 2, 3, 4), (ctypes.c_uint32 * 2)(5, 6))
@@ -266,14 +267,15 @@ OPTIONAL = {"white_modes": [3, 4, 6], "fft_init": [6], "initial_conditions_scrat
             "displace": [3, 10], "exec_self_test": [0], "deposit": [4, 11], "read_out": [11], "power_sums": [7, 12],
             "shot_noise": [1], "correlation_modes": [1, 9], "correlation_sums": [9], "closed_triangle_count": [3],
             "closed_triangles": [4], "triangle_counts": [8], "bispectrum_sums": [10], "bispectrum": [2, 14], "kick": [14, 15, 18],
-            "drift": [6, 7, 8], "evolve": [4, 7, 15, 16], "halos": [6, 12], "halo_sums": [6, 13], "fof_labels": [9]}
+            "drift": [6, 7, 8], "evolve": [4, 7, 15, 16], "halos": [6, 12], "halo_sums": [6, 13], "fof_labels": [9],
+            "fit_suppression": [2], "ratio_of_means": [6], "difference_of_means": [6], "control_variates": [6], "carpool": [8]}
 EXEC = ("particle_ids", "potential_amplitude_table", "alpha_table", "impose", "modes_from_field", "scale_modes",
         "copy_modes", "add_local", "second_order_source", "displacement", "add_cells", "copy_cells", "interlace",
         "shell_modes", "compensate", "forces", "force", "potential", "fof_relabel", "halo_count", "spheres", "refine_centres")
 # Sizes that follow a pointer and are not its length: sides, an axis, a number of threads.
 NO_LENGTH = {"mode_table_length": 1, "fft_tables_scratch": 1, "fft_scratch": 1, "brick_whole": 1, "brick_slab": 1,
              "brick_transposed_slab": 1, "threads_create": 2, "displacement": 5, "displace": 6, "deposit_scratch": 2,
-             "read_out_scratch": 2, "force": 4, "kick_scratch": 2, "evolve_scratch": 2}
+             "read_out_scratch": 2, "force": 4, "kick_scratch": 2, "evolve_scratch": 2, "bias_posterior_scratch": 1}
 # Where more than a few are refused as a length.
 AT_MOST = {"power_sums": 3, "correlation_sums": 3}
 
@@ -334,6 +336,7 @@ def main(path, vectors, header):
         ctypes_estimate.bins(universe)
         ctypes_gravity.steps_in_time(universe)
         ctypes_halos.scalars(universe)
+        ctypes_variance.Statistics(universe).run()
         for suffix in ("f32", "f64"):
             twin = Twin(universe, suffix)
             twin.transforms()
@@ -347,6 +350,7 @@ def main(path, vectors, header):
         if run is exec_of_pool:
             ctypes_estimate.physics(library, run)
             ctypes_gravity.growing_mode(library, run)
+            ctypes_variance.known_answers(universe)
             for suffix in ("f32", "f64"):
                 ctypes_halos.two_clumps(Twin(universe, suffix))
             ctypes_gravity.attraction(twin)

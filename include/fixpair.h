@@ -3761,8 +3761,8 @@ fixpair_status_t fixpair_ensemble_init(double *state,
  *
  * In/Out: state    of fixpair_ensemble_init
  * In:     samples  samples_len doubles: one sample or several, one after another
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_LENGTH for samples that are not whole, FIXPAIR_ERROR_VERSION for a state that
- *          fixpair_ensemble_init did not make, FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_RANGE for numbers beyond 1e140
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_LENGTH for samples that are not whole or a state of fewer than three
+ *          doubles, FIXPAIR_ERROR_VERSION for a state that fixpair_ensemble_init did not make, FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_RANGE for numbers beyond 1e140
  * Cost: a multiplication and addition for each sample and number of the state
  */
 fixpair_status_t fixpair_ensemble_add(double *state,
@@ -3867,7 +3867,7 @@ fixpair_status_t fixpair_ensemble_correlation(double *correlation,
  *
  * Out: average             len doubles
  * In:  original, inverted  len doubles each
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE if an average overflows
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE
  */
 fixpair_status_t fixpair_pair_average(double *average,
                                       const double *original,
@@ -4016,7 +4016,8 @@ fixpair_status_t fixpair_lattice_modes(uint64_t *counts,
  * In:  power  len values of P without shot noise
  *      modes  len numbers N_k
  *      noise  1/n; 0 for a field
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for modes or a sigma that are not positive, or negative noise
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for modes or a sigma that are not positive, negative noise, or a
+ *          sigma that overflows
  */
 fixpair_status_t fixpair_sigma_gaussian(double *sigma,
                                         const double *power,
@@ -4200,8 +4201,8 @@ fixpair_status_t fixpair_likelihood_init(struct fixpair_bias_likelihood *likelih
  *         linear    len values of P_lin at their redshift, averaged over the modes of each bin
  *         alpha     len values of fixpair_alpha at their redshift
  *         spectrum  FIXPAIR_SPECTRUM_...
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_RANGE for sigma, P_lin or alpha that is not positive, or numbers
- *          too extreme
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_RANGE for sigma, P_lin or alpha that is not positive, a
+ *          likelihood that no data have made, or numbers too extreme
  */
 fixpair_status_t fixpair_likelihood_add(struct fixpair_bias_likelihood *likelihood,
                                         const double *power,
@@ -4225,7 +4226,7 @@ fixpair_status_t fixpair_likelihood_add_correlated_scratch(struct fixpair_layout
  *
  * In/Out: likelihood
  * In:     power, linear, alpha  len doubles each, as for fixpair_likelihood_add: first those of P_hh, then those of P_hm
- *         root       len x len doubles: the lower triangle L of their covariance L L^T, row by row (fixpair_covariance_root); what lies above the diagonal is not used
+ *         root       len x len doubles: the lower triangle L of their covariance L L^T, row by row (fixpair_covariance_root); what lies above the diagonal is finite and not used
  *         halo_halo  how many of them are P_hh
  *         precision  what the inverse covariance is multiplied by: 1, or for a covariance that was measured fixpair_hartlap_factor
  *         scratch    scratch_len bytes
@@ -4248,7 +4249,7 @@ fixpair_status_t fixpair_likelihood_add_correlated(struct fixpair_bias_likelihoo
  *
  * In/Out: likelihood
  * In:     other
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE or FIXPAIR_ERROR_RANGE for numbers that no data have made
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE or FIXPAIR_ERROR_RANGE for numbers that no data have made, or too large
  */
 fixpair_status_t fixpair_likelihood_merge(struct fixpair_bias_likelihood *likelihood,
                                           const struct fixpair_bias_likelihood *other);
@@ -4309,7 +4310,7 @@ fixpair_status_t fixpair_bias_posterior_scratch(struct fixpair_layout *scratch, 
  *      points          of the grid, for each parameter: 128 for three digits and more
  *      probability     of the central region: 0.68 in the paper
  *      scratch         scratch_len bytes
- * Returns: as fixpair_fit_bias; FIXPAIR_ERROR_LENGTH for another number of parameters, FIXPAIR_ERROR_RANGE for points or a probability outside (0, 1), FIXPAIR_ERROR_SCRATCH, FIXPAIR_ERROR_CONVERGENCE if the
+ * Returns: as fixpair_fit_bias; _OVERFLOW, FIXPAIR_ERROR_LENGTH for another number of parameters, FIXPAIR_ERROR_RANGE for points or a probability outside (0, 1), FIXPAIR_ERROR_SCRATCH, FIXPAIR_ERROR_CONVERGENCE if the
  *          posterior does not end anywhere, as that of f_NL where b_g = p cannot be excluded
  * Cost: 30 ns a point of the grid, 0.5 ms for 128 x 128
  */
@@ -4346,8 +4347,8 @@ fixpair_status_t fixpair_bias_range(double *ranges,
  *      free         FIXPAIR_FREE_... together
  *      ranges       2 parameters doubles, as from fixpair_bias_range
  *      points       parameters numbers of points, 2 or more
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_LENGTH, FIXPAIR_ERROR_RANGE for empty ranges, fewer than two points, or chi^2 that
- *          overflows
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_LENGTH, FIXPAIR_ERROR_RANGE for empty ranges, fewer than two points, delta_c
+ *          that is not positive, numbers that no data have made, or chi^2 that overflows
  * Cost: 10 ns a point
  */
 fixpair_status_t fixpair_bias_grid(double *chi_squared,
@@ -4366,7 +4367,8 @@ fixpair_status_t fixpair_bias_grid(double *chi_squared,
  * In:  chi_squared  points_first x points_second doubles, the second fastest; 1 for the second of a grid of one parameter
  *      axis         0 for the first parameter, 1 for the second
  *      low, high    the ends of its range, in whose inverse unit the density comes
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for another axis, FIXPAIR_ERROR_RANGE for an axis of one point, or an empty range
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for another axis, FIXPAIR_ERROR_RANGE for an axis of one point, or a range
+ *          that is empty or too extreme
  */
 fixpair_status_t fixpair_marginal(double *density,
                                   const double *chi_squared,
@@ -4384,7 +4386,7 @@ fixpair_status_t fixpair_marginal(double *density,
  *      low, high    of the first point and of the last
  *      probability  of the central region: 0.68 in the paper
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for fewer than three points, FIXPAIR_ERROR_RANGE for an empty range, negative densities
- *          or none above zero, or a probability outside (0, 1)
+ *          or none above zero, a probability outside (0, 1), or numbers too extreme
  */
 fixpair_status_t fixpair_read_posterior(struct fixpair_posterior *posterior,
                                         const double *density,
@@ -4404,8 +4406,8 @@ fixpair_status_t fixpair_read_posterior(struct fixpair_posterior *posterior,
  * In:  chi_squared   points_first x points_second doubles, the second fastest
  *      ranges        4 doubles: lowest and highest of the first parameter, and of the second
  *      level
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for fewer places than segments, FIXPAIR_ERROR_RANGE for fewer than two points, or
- *          empty ranges
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for fewer places than segments, FIXPAIR_ERROR_RANGE for fewer than two points,
+ *          empty ranges, or differences that overflow
  */
 fixpair_status_t fixpair_contours(double *segments,
                                   size_t segments_len,

@@ -171,8 +171,8 @@ pub unsafe extern "C" fn fixpair_likelihood_init(likelihood: *mut BiasLikelihood
 ///         linear    len values of P_lin at their redshift, averaged over the modes of each bin
 ///         alpha     len values of fixpair_alpha at their redshift
 ///         spectrum  FIXPAIR_SPECTRUM_...
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_RANGE for sigma, P_lin or alpha that is not positive, or numbers
-///          too extreme
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_RANGE for sigma, P_lin or alpha that is not positive, a
+///          likelihood that no data have made, or numbers too extreme
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -220,7 +220,7 @@ pub unsafe extern "C" fn fixpair_likelihood_add_correlated_scratch(
 ///
 /// In/Out: likelihood
 /// In:     power, linear, alpha  len doubles each, as for fixpair_likelihood_add: first those of P_hh, then those of P_hm
-///         root       len x len doubles: the lower triangle L of their covariance L L^T, row by row (fixpair_covariance_root); what lies above the diagonal is not used
+///         root       len x len doubles: the lower triangle L of their covariance L L^T, row by row (fixpair_covariance_root); what lies above the diagonal is finite and not used
 ///         halo_halo  how many of them are P_hh
 ///         precision  what the inverse covariance is multiplied by: 1, or for a covariance that was measured fixpair_hartlap_factor
 ///         scratch    scratch_len bytes
@@ -261,7 +261,7 @@ pub unsafe extern "C" fn fixpair_likelihood_add_correlated(
 ///
 /// In/Out: likelihood
 /// In:     other
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE or FIXPAIR_ERROR_RANGE for numbers that no data have made
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_NOT_FINITE or FIXPAIR_ERROR_RANGE for numbers that no data have made, or too large
 ///
 /// # Safety
 /// Pointers are null or point to one value.

@@ -82,8 +82,8 @@ pub unsafe extern "C" fn fixpair_ensemble_init(
 ///
 /// In/Out: state    of fixpair_ensemble_init
 /// In:     samples  samples_len doubles: one sample or several, one after another
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_LENGTH for samples that are not whole, FIXPAIR_ERROR_VERSION for a state that
-///          fixpair_ensemble_init did not make, FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_RANGE for numbers beyond 1e140
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, FIXPAIR_ERROR_LENGTH for samples that are not whole or a state of fewer than three
+///          doubles, FIXPAIR_ERROR_VERSION for a state that fixpair_ensemble_init did not make, FIXPAIR_ERROR_NOT_FINITE, FIXPAIR_ERROR_RANGE for numbers beyond 1e140
 /// Cost: a multiplication and addition for each sample and number of the state
 ///
 /// # Safety
@@ -298,7 +298,7 @@ pub unsafe extern "C" fn fixpair_ensemble_correlation(
 ///
 /// Out: average             len doubles
 /// In:  original, inverted  len doubles each
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE if an average overflows
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.

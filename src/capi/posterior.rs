@@ -80,7 +80,7 @@ pub unsafe extern "C" fn fixpair_bias_posterior_scratch(
 ///      points          of the grid, for each parameter: 128 for three digits and more
 ///      probability     of the central region: 0.68 in the paper
 ///      scratch         scratch_len bytes
-/// Returns: as fixpair_fit_bias; FIXPAIR_ERROR_LENGTH for another number of parameters, FIXPAIR_ERROR_RANGE for points or a probability outside (0, 1), FIXPAIR_ERROR_SCRATCH, FIXPAIR_ERROR_CONVERGENCE if the
+/// Returns: as fixpair_fit_bias; _OVERFLOW, FIXPAIR_ERROR_LENGTH for another number of parameters, FIXPAIR_ERROR_RANGE for points or a probability outside (0, 1), FIXPAIR_ERROR_SCRATCH, FIXPAIR_ERROR_CONVERGENCE if the
 ///          posterior does not end anywhere, as that of f_NL where b_g = p cannot be excluded
 /// Cost: 30 ns a point of the grid, 0.5 ms for 128 x 128
 ///
@@ -159,8 +159,8 @@ pub unsafe extern "C" fn fixpair_bias_range(
 ///      free         FIXPAIR_FREE_... together
 ///      ranges       2 parameters doubles, as from fixpair_bias_range
 ///      points       parameters numbers of points, 2 or more
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_LENGTH, FIXPAIR_ERROR_RANGE for empty ranges, fewer than two points, or chi^2 that
-///          overflows
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _CHOICE, FIXPAIR_ERROR_LENGTH, FIXPAIR_ERROR_RANGE for empty ranges, fewer than two points, delta_c
+///          that is not positive, numbers that no data have made, or chi^2 that overflows
 /// Cost: 10 ns a point
 ///
 /// # Safety
@@ -199,7 +199,8 @@ pub unsafe extern "C" fn fixpair_bias_grid(
 /// In:  chi_squared  points_first x points_second doubles, the second fastest; 1 for the second of a grid of one parameter
 ///      axis         0 for the first parameter, 1 for the second
 ///      low, high    the ends of its range, in whose inverse unit the density comes
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for another axis, FIXPAIR_ERROR_RANGE for an axis of one point, or an empty range
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for another axis, FIXPAIR_ERROR_RANGE for an axis of one point, or a range
+///          that is empty or too extreme
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -232,7 +233,7 @@ pub unsafe extern "C" fn fixpair_marginal(
 ///      low, high    of the first point and of the last
 ///      probability  of the central region: 0.68 in the paper
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for fewer than three points, FIXPAIR_ERROR_RANGE for an empty range, negative densities
-///          or none above zero, or a probability outside (0, 1)
+///          or none above zero, a probability outside (0, 1), or numbers too extreme
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -264,8 +265,8 @@ pub unsafe extern "C" fn fixpair_read_posterior(
 /// In:  chi_squared   points_first x points_second doubles, the second fastest
 ///      ranges        4 doubles: lowest and highest of the first parameter, and of the second
 ///      level
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for fewer places than segments, FIXPAIR_ERROR_RANGE for fewer than two points, or
-///          empty ranges
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_LENGTH for fewer places than segments, FIXPAIR_ERROR_RANGE for fewer than two points,
+///          empty ranges, or differences that overflow
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.

@@ -63,7 +63,8 @@ pub unsafe extern "C" fn fixpair_lattice_modes(
 /// In:  power  len values of P without shot noise
 ///      modes  len numbers N_k
 ///      noise  1/n; 0 for a field
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for modes or a sigma that are not positive, or negative noise
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for modes or a sigma that are not positive, negative noise, or a
+///          sigma that overflows
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.

@@ -10,7 +10,8 @@ use crate::status::{Error, Result};
 /// Returns how many segments there are; `segments` may be empty to count them, and is untouched if it is too short for all.
 ///
 /// # Errors
-/// `Length` for a grid of another size, or segments fewer than there are and not none, `NotFinite`, `Range` for fewer than two points or an empty range.
+/// `Length` for a grid of another size, or segments fewer than there are and not none, `NotFinite`, `Range` for fewer than two points, an empty range, or
+/// differences that overflow.
 pub fn contours(
     segments: &mut [[f64; 4]],
     values: &[f64],
@@ -23,6 +24,11 @@ pub fn contours(
     finite(range.as_flattened())?;
     finite(&[level])?;
     if points.iter().any(|&points| points < 2) || range.iter().any(|[low, high]| high <= low) {
+        return Err(Error::Range);
+    }
+    let heights = values.iter().map(|value| value - level);
+    let widths = range.iter().map(|[low, high]| high - low);
+    if heights.chain(widths).any(|x| !x.is_finite()) {
         return Err(Error::Range);
     }
     let mut count = 0;

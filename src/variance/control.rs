@@ -99,7 +99,8 @@ pub fn control_variate_loss(estimates: u64, controls: u64) -> Result<f64> {
 /// # Errors
 /// `NotFinite`, `Range` for sigma_y = 0, negative scatter, |rho| > 1, or a gain that overflows.
 pub fn control_variate_gain(sigma_y: f64, sigma_c: f64, correlation: f64, beta: f64) -> Result<f64> {
-    finite(&[beta])?;
+    not_negative(&[sigma_y, sigma_c])?;
+    finite(&[correlation, beta])?;
     let rest = super::matched::difference_sigma(
         sigma_y,
         result(beta.abs() * sigma_c)?,

@@ -86,7 +86,9 @@ fn head(state: &[f64]) -> Result<(f64, usize, Moments)> {
 fn view(state: &[f64]) -> Result<View<'_>> {
     let (count, values, moments) = head(state)?;
     let (mean, squares) = state[HEAD..].split_at(values);
-    Ok(View { count, moments, mean, squares })
+    let view = View { count, moments, mean, squares };
+    let sound = finite(state).is_ok() && (0..values).all(|i| view.square(i, i).is_some_and(|x| x >= 0.0));
+    if sound { Ok(view) } else { Err(Error::Version) }
 }
 
 impl View<'_> {

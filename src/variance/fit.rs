@@ -147,6 +147,16 @@ fn descend(likelihood: &BiasLikelihood, start: &Bias, free: &Free) -> Result<(Bi
     Err(Error::Convergence)
 }
 
+/// A descent that was held at b_g = 0, with downhill beyond, found no minimum.
+fn check_inside(likelihood: &BiasLikelihood, at: &Bias, free: &Free) -> Result<()> {
+    if free.b_g() {
+        let step = linearised(likelihood, at, free).solve(free.numbers().len())?;
+        let beyond = at.b_g + step[0] <= 0.0;
+        return if beyond { Err(Error::Convergence) } else { Ok(()) };
+    }
+    Ok(())
+}
+
 /// The lowest of the minima that are found from `start` and from the bias that fits best without f_NL.
 pub(super) fn minimum(likelihood: &BiasLikelihood, start: &Bias, free: &Free) -> Result<(Bias, f64)> {
     let column = |j: usize| (0..=j).map(|i| likelihood.root[i][j] * likelihood.root[i][j]).sum::<f64>();
@@ -163,7 +173,9 @@ pub(super) fn minimum(likelihood: &BiasLikelihood, start: &Bias, free: &Free) ->
         if free.b_g() && !positive {
             continue;
         }
-        match (descend(likelihood, &place, free), best) {
+        let found = descend(likelihood, &place, free);
+        let found = found.and_then(|of| check_inside(likelihood, &of.0, free).map(|()| of));
+        match (found, best) {
             (Ok(new), Ok(old)) if old.1 <= new.1 => best = Ok(old),
             (Ok(new), _) => best = Ok(new),
             (Err(error), Err(_)) => best = Err(error),

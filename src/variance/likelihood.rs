@@ -74,8 +74,9 @@ impl BiasLikelihood {
     /// Adds bins that do not correlate, each with its sigma (Eq. chi2).
     ///
     /// # Errors
-    /// `Length` for arrays of different lengths, `NotFinite`, `Range` for sigma, P_lin or alpha that is not positive, or numbers too extreme.
+    /// `Length` for arrays of different lengths, `NotFinite`, `Range` for sigma, P_lin or alpha that is not positive, `self` that no data have made, or numbers too extreme.
     pub fn add(&mut self, spectrum: Spectrum, spectra: Spectra<'_>, sigma: &[f64]) -> Result<()> {
+        self.check()?;
         spectra.check()?;
         same_length(sigma.len(), &[spectra.power.len()])?;
         positive(sigma)?;
@@ -104,6 +105,7 @@ impl BiasLikelihood {
         scratch: &mut [u8],
     ) -> Result<()> {
         let bins = spectra.power.len();
+        self.check()?;
         spectra.check()?;
         super::check::table(root, bins, bins)?;
         positive(&[precision])?;
@@ -138,6 +140,7 @@ impl BiasLikelihood {
     /// # Errors
     /// `NotFinite` or `Range` for numbers that no data have made.
     pub fn merge(&mut self, other: &Self) -> Result<()> {
+        self.check()?;
         other.check()?;
         let mut triangle = Triangle(self.root);
         other.root.iter().for_each(|&row| triangle.push(row));

@@ -76,6 +76,7 @@ pub fn matched_difference(first: &[f64], second: &[f64]) -> Result<MatchedDiffer
     let centre = mean[0] - mean[1];
     // Not from rho, which would lose the digits that matching wins.
     let square: f64 = first.iter().zip(second).map(|(x, y)| (x - y - centre) * (x - y - centre)).sum();
+    result(square)?;
     Ok(MatchedDifference {
         mean_first: mean[0],
         mean_second: mean[1],
@@ -151,6 +152,6 @@ pub fn universality(b_g: Estimate, f_nl: Estimate, covariance: f64, f_true: f64)
     let square = first * first + second * second + 2.0 * by_b * by_f * covariance;
     Ok(Estimate {
         value: result(b_g.value - (b_g.value - 1.0) * ratio)?,
-        error: result(sqrt(square.max(0.0)))?,
+        error: sqrt(result(square)?.max(0.0)),
     })
 }

@@ -91,6 +91,11 @@ fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f
         range[axis] = [(centre[axis] - 5.0 * error).max(lowest(axis)), centre[axis] + 5.0 * error];
     }
     let mut least = fit.chi_squared;
+    // At b_g = p no f_NL changes anything: a posterior that has that place has no end, however narrow the way to it.
+    let blind = Bias { b_g: fit.value.p, ..fit.value };
+    if free.numbers() == [0, 2] && blind.b_g > 0.0 && likelihood.at(&blind) < least + REACH {
+        return Err(Error::Convergence);
+    }
     let places = if count == 2 { PLACES } else { 1 };
     let chi_squared = |range: &[[f64; 2]; 2], axis: usize, value: f64, place: usize| {
         let mut values = [value; 2];
@@ -168,12 +173,15 @@ pub fn bias_grid(
     })
 }
 
+/// Steps of a grid with which no density of [`marginal`] over- or underflows.
+const STEPS: core::ops::RangeInclusive<f64> = 1e-280..=1e280;
+
 /// The posterior density of one parameter of a grid of chi^2, integrated over the other and normalised.
 ///
 /// `axis`: 0 or 1; `range`: of that parameter, in whose inverse unit the density is.
 ///
 /// # Errors
-/// `Length` for arrays that do not fit, `NotFinite`, `Range` for an axis of one point, or an empty range.
+/// `Length` for arrays that do not fit, `NotFinite`, `Range` for an axis of one point, or a range that is empty or too extreme.
 pub fn marginal(
     out: &mut [f64],
     chi_squared: &[f64],
@@ -188,6 +196,9 @@ pub fn marginal(
         return Err(Error::Range);
     }
     same_length(points[axis], &[out.len()])?;
+    if !STEPS.contains(&((range[1] - range[0]) / (points[axis] - 1) as f64)) {
+        return Err(Error::Range);
+    }
     let least = chi_squared.iter().copied().fold(f64::INFINITY, f64::min);
     let other = points[1 - axis];
     for (i, out) in out.iter_mut().enumerate() {
@@ -241,7 +252,8 @@ pub struct Posterior {
 /// uniform grid.
 ///
 /// # Errors
-/// `Length` for fewer than three points, `NotFinite`, `Range` for an empty range, negative densities, none above zero, or a probability outside (0, 1).
+/// `Length` for fewer than three points, `NotFinite`, `Range` for an empty range, negative densities, none above zero, a probability outside (0, 1), or
+/// numbers too extreme.
 pub fn read_posterior(density: &[f64], range: [f64; 2], probability: f64) -> Result<Posterior> {
     finite(density)?;
     finite(&[range[0], range[1], probability])?;
@@ -261,9 +273,10 @@ pub fn read_posterior(density: &[f64], range: [f64; 2], probability: f64) -> Res
     let mean = moment(&|x| x);
     let deviation = sqrt(moment(&|x| (x - mean) * (x - mean)));
     let tail = 0.5 * (1.0 - probability);
-    let [low, high] = [tail, 1.0 - tail].map(|below| value(quantile(density, below * sum)));
     let top = (0..points).fold(0, |top, i| if density[i] > density[top] { i } else { top });
-    Ok(Posterior {
+    let unit = density[top];
+    let [low, high] = [tail, 1.0 - tail].map(|below| value(quantile(density, unit, below * (sum / unit))));
+    let read = Posterior {
         peak: value(peak(density, top)),
         mean,
         deviation,
@@ -271,8 +284,11 @@ pub fn read_posterior(density: &[f64], range: [f64; 2], probability: f64) -> Res
         high,
         centre: 0.5 * (low + high),
         half_width: 0.5 * (high - low),
-        edge: density[0].max(density[points - 1]) / density[top],
-    })
+        edge: density[0].max(density[points - 1]) / unit,
+    };
+    finite(&[read.peak, mean, deviation, low, high, read.centre, read.half_width])
+        .map_err(|_| Error::Range)?;
+    Ok(read)
 }
 
 /// The place of the maximum about point `top`, between points.
@@ -287,10 +303,11 @@ fn peak(density: &[f64], top: usize) -> f64 {
     if shift.is_finite() { top as f64 + shift.clamp(-0.5, 0.5) } else { top as f64 }
 }
 
-/// The place, in points, below which the sum of the density, linear between points, is `wanted`.
-fn quantile(density: &[f64], wanted: f64) -> f64 {
+/// The place, in points, below which the sum of the density, linear between points and in units of its peak, is `wanted`.
+fn quantile(density: &[f64], unit: f64, wanted: f64) -> f64 {
     let mut below = 0.0;
     for (i, pair) in density.windows(2).enumerate() {
+        let pair = [pair[0] / unit, pair[1] / unit];
         let inside = 0.5 * (pair[0] + pair[1]);
         if below + inside >= wanted && inside > 0.0 {
             // pair[0] t + (pair[1] - pair[0]) t^2/2 = rest, in the form that holds for equal densities too.

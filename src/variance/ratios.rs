@@ -50,7 +50,7 @@ pub fn ratio_of_means(
         let (first, second) = (above.error[i] / below.mean[i], ratio * (below.error[i] / below.mean[i]));
         let rho = correlation.map_or(0.0, |rho| rho[i]);
         let square = first * first + second * second - 2.0 * rho * first * second;
-        Ok([ratio, result(sqrt(square.max(0.0)))?])
+        Ok([ratio, sqrt(result(square)?.max(0.0))])
     })
 }
 
@@ -76,6 +76,7 @@ pub fn difference_of_means(
         let (a, b) = (first.error[i] / sigma[i], second.error[i] / sigma[i]);
         let rho = correlation.map_or(0.0, |rho| rho[i]);
         let square = a * a + b * b - 2.0 * rho * a * b;
-        Ok([result((first.mean[i] - second.mean[i]) / sigma[i])?, result(sqrt(square.max(0.0)))?])
+        let difference = result((first.mean[i] - second.mean[i]) / sigma[i])?;
+        Ok([difference, sqrt(result(square)?.max(0.0))])
     })
 }

@@ -75,13 +75,17 @@ pub fn jackknife_means(out: &mut [f64], samples: &[f64], values: usize) -> Resul
         return Err(Error::Samples);
     }
     let total = |column: usize| samples.iter().skip(column).step_by(values).sum::<f64>();
+    let without = |total: f64, at: usize| super::check::result((total - samples[at]) / (rows - 1) as f64);
     for column in 0..values {
-        super::check::result(total(column))?;
+        let total = total(column);
+        for at in (column..samples.len()).step_by(values) {
+            without(total, at)?;
+        }
     }
     for column in 0..values {
         let total = total(column);
         for at in (column..samples.len()).step_by(values) {
-            out[at] = (total - samples[at]) / (rows - 1) as f64;
+            out[at] = without(total, at)?;
         }
     }
     Ok(())
@@ -123,6 +127,9 @@ pub fn jackknife_covariance(
     rows: usize,
     values: usize,
 ) -> Result<()> {
+    if values == 0 {
+        return Err(Error::Length);
+    }
     table(deleted, rows, values)?;
     same_length(values.checked_mul(values).ok_or(Error::Overflow)?, &[covariance.len()])?;
     if rows < 2 {
