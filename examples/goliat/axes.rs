@@ -160,9 +160,8 @@ impl Axes {
     /// Straight lines (x, y, x, y), cut at the frame.
     pub(crate) fn segments(&self, drawing: &mut Drawing, segments: &[[f64; 4]], pen: Pen) {
         drawing.clip(&self.area);
-        for &[x0, y0, x1, y1] in segments {
-            drawing.line(&[self.place(x0, y0), self.place(x1, y1)], pen);
-        }
+        let place = |&[x0, y0, x1, y1]: &[f64; 4]| [self.place(x0, y0), self.place(x1, y1)];
+        drawing.lines(&segments.iter().map(place).collect::<Vec<_>>(), pen);
         drawing.unclip();
     }
 

@@ -18,7 +18,7 @@ use crate::memory::Memory;
 const REGION: f64 = 0.68;
 /// Values of each parameter on the grid of a posterior, and on that of a contour, which is narrow and aslant.
 const POINTS: usize = 128;
-const FINE: usize = 512;
+const FINE: usize = 320;
 
 /// What is free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
