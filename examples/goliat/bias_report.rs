@@ -75,8 +75,8 @@ fn volume(reference: Option<f64>, sigma: Option<f64>, kind: Kind) -> Option<f64>
 fn scatter_table(text: &mut String, suite: &Suite, analysis: &Analysis) {
     let _ = write!(
         text,
-        "\nScatter of P of halos: Eq. sigma_fix fitted to k < {REACH} h/Mpc; R_cv is what is left of cosmic variance at small k\n  {:<30}{:>18}{:>18}{:>18}{:>10} / {}\n",
-        "", "R_cv", "k_soft [h/Mpc]", "f_sn", "chi^2", "degrees"
+        "\nScatter of P of halos: Eq. sigma_fix fitted to k < {REACH} h/Mpc; R_cv is what is left of cosmic variance at small k\n  {:<30}{:>18}{:>18}{:>18}{:>10} / degrees\n",
+        "", "R_cv", "k_soft [h/Mpc]", "f_sn", "chi^2"
     );
     for (half, place) in HALVES.into_iter().zip(0..) {
         for row in &analysis.rows {
