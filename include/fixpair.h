@@ -3876,6 +3876,7 @@ fixpair_status_t fixpair_pair_average(double *average,
 
 /*
  * Scatter per simulation: sqrt(simulations) times the standard deviation of estimates (Eq. sigma_paired), with its error sigma/sqrt(2 (N - 1)) (Eq. errerr).
+ * It compares types of simulations. A likelihood of pair averages takes the scatter of one average: the deviation itself.
  *
  * Out: sigma, error  len doubles each
  * In:  deviation     len standard deviations over estimates, with N - 1
@@ -4034,8 +4035,7 @@ fixpair_status_t fixpair_sigma_gaussian(double *sigma,
  * In:  suppression  R_cv, k_soft, f_sn
  *      k            len wavenumbers, in the unit of k_soft
  *      power, modes, noise as for fixpair_sigma_gaussian
- * Returns: as fixpair_sigma_gaussian; FIXPAIR_ERROR_RANGE for k, k_soft or a sigma that is not positive. R_cv and f_sn may be negative, as those of fits to few
- *          simulations are within their errors
+ * Returns: as fixpair_sigma_gaussian; FIXPAIR_ERROR_RANGE for k or k_soft that is not positive, negative R_cv or f_sn
  */
 fixpair_status_t fixpair_sigma_suppressed(double *sigma,
                                           const struct fixpair_suppression *suppression,
@@ -4058,7 +4058,7 @@ fixpair_status_t fixpair_sigma_suppressed(double *sigma,
  *      k, power, modes, noise as for fixpair_sigma_suppressed; with noise = 0 f_sn is 1 and has no error
  *      estimates  N, independent ones; not read where there are errors
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for k, modes, sigma or errors that are not positive, or negative noise,
- *          FIXPAIR_ERROR_SAMPLES for fewer bins than parameters or fewer than two estimates, FIXPAIR_ERROR_SINGULAR where the data have no step, FIXPAIR_ERROR_CONVERGENCE
+ *          FIXPAIR_ERROR_SAMPLES for fewer bins than parameters or fewer than two estimates, FIXPAIR_ERROR_SINGULAR where the data have no step (use the measured scatter, or that of fixpair_sigma_gaussian), FIXPAIR_ERROR_CONVERGENCE
  * Cost: 5 microseconds a bin and search, some ten searches without errors
  */
 fixpair_status_t fixpair_fit_suppression(struct fixpair_suppression_fit *fit,
@@ -4279,7 +4279,7 @@ fixpair_status_t fixpair_likelihood_chi_squared(double *chi_squared,
  *
  * Out: fit         the minimum, errors from the curvature there, covariance, chi^2, degrees of freedom
  * In:  likelihood
- *      start       the parameters that are not free, and a place to begin; the others need not be near
+ *      start       the parameters that are not free, and a place to begin, which need not be near: those of fixpair_bias_init do
  *      free        FIXPAIR_FREE_... together
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for other sets of parameters, FIXPAIR_ERROR_RANGE for delta_c that is not positive, or
  *          numbers that no data have made, FIXPAIR_ERROR_SINGULAR where the data do not constrain a parameter (p where f_NL = 0, f_NL where b_g = p), FIXPAIR_ERROR_CONVERGENCE
@@ -4465,6 +4465,7 @@ fixpair_status_t fixpair_percival_factor(double *factor,
 
 /*
  * The difference of matched estimates, Delta f = f100 - f0 (Avila & Adame 2022, Eq. diff), with both scatters, their correlation, and its own.
+ * f100 is the first, f0 the second.
  *
  * Out: difference
  * In:  first, second  len estimates each, of the same seeds in the same order; a pair is one estimate
@@ -4539,7 +4540,8 @@ fixpair_status_t fixpair_control_variates_scratch(struct fixpair_layout *scratch
  *
  *     beta = cov(y, c)/(var(c) + N error^2)
  *
- * The error is that of a regression: it pays for estimating beta, on average with fixpair_control_variate_loss, and for the error of mu.
+ * The error is that of a regression: it pays for estimating beta, on average with fixpair_control_variate_loss, and for the error of mu. The optimal
+ * beta trusts mu: where the model that gives it is wrong, <c> - mu is many errors from 0, the result is shifted by beta times that, and its error grows.
  *
  * Out: values   values_len structs, one for each value of a sample
  * In:  y, c     samples x values_len doubles each, row by row; a pair is one sample

@@ -17,8 +17,8 @@ goliat: what Fix, Pair and Match do to the scatter of cosmological simulations
 For each seed, makes the initial conditions of the GOLIAT-PNG suite at z = 32 (Avila & Adame 2022) in eight variants:
 {{normal, fixed}} x {{original, inverted}} x {{f_NL = 0, 100}}; measures the power spectrum and the bispectrum, with f_NL
 from all of its triangles, and of the first seed the particles in redshift space; evolves the particles to z = 1, finds
-halos, and measures the power spectra and squeezed bispectra of halos and matter; prints their scatter; and writes
-tables (CSV) and figures (PNG, SVG).
+halos, and measures the power spectra and squeezed bispectra of halos and matter; fits bias and f_NL to the spectra of
+halos; prints scatter, posteriors and what is significant; and writes tables (CSV) and figures (PNG, SVG).
 
 A run that is stopped, by whatever, goes on where it was when it is started again with the same options and folder.
 
@@ -31,6 +31,7 @@ Usage: cargo run --release --example goliat -- [options]
       --steps N            steps from z = 32 to z = 1, equal in scale factor
   -m, --mesh N             cells of the force a particle and axis: 1, 2 or 3
   -f, --fnl F              f_NL (local, CMB convention) of the non-Gaussian half [default: 100]
+  -k, --k-max K            largest k in h/Mpc of the fits of bias and f_NL      [default: 0.09]
   -t, --threads N          threads; the results do not depend on it             [default: all cores]
   -o, --output FOLDER      where tables and figures go, made if missing         [default: goliat-output]
   -c, --checkpoint MINUTES how often a universe under way is saved              [default: 3]
@@ -57,6 +58,8 @@ pub(crate) struct Arguments {
     pub(crate) mesh_factor: usize,
     /// f_NL of the non-Gaussian variants.
     pub(crate) fnl: f64,
+    /// Largest k of the fits of bias, h/Mpc.
+    pub(crate) k_max: f64,
     /// Worker threads.
     pub(crate) threads: usize,
     /// Folder for tables and figures.
@@ -78,6 +81,7 @@ impl Arguments {
             steps,
             mesh_factor,
             fnl: 100.0,
+            k_max: 0.09,
             threads: std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
             output: PathBuf::from("goliat-output"),
             checkpoint: Duration::from_secs(180),
@@ -120,6 +124,7 @@ pub(crate) fn parse(mut parser: lexopt::Parser) -> Result<Request, Failure> {
             Long("steps") => set!(steps),
             Short('m') | Long("mesh") => set!(mesh_factor),
             Short('f') | Long("fnl") => set!(fnl),
+            Short('k') | Long("k-max") => set!(k_max),
             Short('t') | Long("threads") => set!(threads),
             Short('o') | Long("output") => {
                 let folder = parser.value()?.into();
@@ -160,6 +165,7 @@ impl Arguments {
                 self.fnl.is_finite() && self.fnl != 0.0,
                 "--fnl must be a number other than 0: f_NL = 0 is always made",
             ),
+            (self.k_max.is_finite() && self.k_max > 0.0, "--k-max must be a positive wavenumber in h/Mpc"),
             (self.threads >= 1, "--threads must be at least 1"),
         ];
         match demands.iter().find(|(met, _)| !met) {
@@ -228,6 +234,7 @@ mod tests {
             ("--steps 0", "--steps"),
             ("--mesh 4", "--mesh"),
             ("--fnl 0", "--fnl"),
+            ("--k-max 0", "--k-max"),
             ("--threads 0", "--threads"),
             ("--checkpoint -1", "--checkpoint"),
             ("--colour", "--colour"),

@@ -157,6 +157,26 @@ impl Axes {
         drawing.unclip();
     }
 
+    /// Straight lines (x, y, x, y), cut at the frame.
+    pub(crate) fn segments(&self, drawing: &mut Drawing, segments: &[[f64; 4]], pen: Pen) {
+        drawing.clip(&self.area);
+        let place = |&[x0, y0, x1, y1]: &[f64; 4]| [self.place(x0, y0), self.place(x1, y1)];
+        drawing.lines(&segments.iter().map(place).collect::<Vec<_>>(), pen);
+        drawing.unclip();
+    }
+
+    /// Discs (x, y, error) with bars of their errors, cut at the frame.
+    pub(crate) fn points(&self, drawing: &mut Drawing, points: &[[f64; 3]], colour: Colour) {
+        drawing.clip(&self.area);
+        let bar = Pen::solid(colour.fade(1.0), 1.2);
+        for &[x, y, error] in points {
+            drawing.line(&[self.place(x, y - error), self.place(x, y + error)], bar);
+            drawing.disc(self.place(x, y), 3.5, Colour::WHITE);
+            drawing.disc(self.place(x, y), 3.5, colour);
+        }
+        drawing.unclip();
+    }
+
     /// A straight line at one height, from end to end.
     pub(crate) fn level(&self, drawing: &mut Drawing, y: f64, pen: Pen) {
         self.line(drawing, &[self.x.low, self.x.high], &[y, y], pen);

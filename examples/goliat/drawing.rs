@@ -142,6 +142,18 @@ impl Drawing {
         }
     }
 
+    /// Straight lines apart from each other; where they meet their colours do not add up.
+    pub(crate) fn lines(&mut self, lines: &[[[f64; 2]; 2]], pen: Pen) {
+        let mut builder = PathBuilder::new();
+        for [from, to] in lines {
+            builder.move_to(from[0] as f32, from[1] as f32);
+            builder.line_to(to[0] as f32, to[1] as f32);
+        }
+        if let Some(path) = builder.finish() {
+            self.shapes.push(Shape::Stroke(path, pen));
+        }
+    }
+
     /// The area within the points.
     pub(crate) fn polygon(&mut self, points: &[[f64; 2]], colour: Colour) {
         if let Some(path) = connect(points, true) {

@@ -6,12 +6,12 @@
 
 use std::ops::Range;
 
+use fixpair::variance::bias::DELTA_C;
+pub(crate) use fixpair::variance::matched::Estimate;
+
 use crate::measurement::{Bins, Late};
 use crate::statistics::{Band, Kind, deviation, error_of_mean, estimates, mean};
 use crate::suite::{Amplitude, Half, Phase, Suite, Variant};
-
-/// Spherical collapse.
-const DELTA_C: f64 = 1.686;
 
 /// Fewer halos in a universe have no spectrum worth printing.
 const ENOUGH: u64 = 50;
@@ -110,13 +110,6 @@ pub(crate) fn mean_k(bins: &Bins, range: &Range<usize>) -> f64 {
 fn weighted(range: &Range<usize>, weight: impl Fn(usize) -> f64, value: impl Fn(usize) -> f64) -> f64 {
     let sum: f64 = range.clone().map(|i| weight(i) * value(i)).sum();
     sum / range.clone().map(weight).sum::<f64>()
-}
-
-/// A number and its error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Estimate {
-    pub(crate) value: f64,
-    pub(crate) error: f64,
 }
 
 /// The amplitude of a spectrum in a range of bins over b^2 times linear theory, with the weights of least variance, for each seed.

@@ -3,11 +3,15 @@
 //! `cargo run --release --example goliat` makes N seeds x 8 variants of the GOLIAT-PNG suite (Avila & Adame 2022,
 //! arXiv:2204.11103) in miniature, from initial conditions at z = 32 to halos at z = 1, and writes tables and figures.
 //! What it measures: at z = 32 P(k), the bispectrum and f_NL from it, and of the first seed's particles the multipoles in redshift space; at
-//! z = 1 P(k) and squeezed bispectra of halos and matter.
-//! The data walks one way: arguments -> suite (measure: start -> evolution -> late; store) -> statistics -> report and figures.
+//! z = 1 P(k) and squeezed bispectra of halos and matter. What it fits: bias and f_NL to the spectra of halos.
+//! The data walks one way: arguments -> suite (measure: start -> evolution -> late; store) -> statistics, fnl (sigma, bias) -> significance -> report and
+//! figures.
 
 mod arguments;
 mod axes;
+mod bias;
+mod bias_csv;
+mod bias_report;
 mod bispectrum;
 #[path = "../common/boltzmann.rs"]
 #[allow(dead_code, reason = "the readers of files are for other programs")]
@@ -17,6 +21,7 @@ mod density;
 mod drawing;
 mod evolution;
 mod figures;
+mod fnl;
 mod late;
 mod late_report;
 mod late_statistics;
@@ -27,6 +32,8 @@ mod memory;
 mod presets;
 mod redshift_space;
 mod report;
+mod sigma;
+mod significance;
 mod start;
 mod statistics;
 mod store;
@@ -43,6 +50,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use arguments::{Arguments, Request};
+use fnl::Analysis;
 use suite::{Suite, Variant, Watch};
 
 /// Whatever stops the program; it is shown to a person.
@@ -85,10 +93,16 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress.finish();
     let elapsed = start.elapsed();
 
-    for (name, content) in csv::tables(&suite) {
+    let analysis = Analysis::new(&suite);
+    let analysis = analysis.as_ref().map_err(String::as_str);
+    let mut tables = Vec::from(csv::tables(&suite));
+    if let Ok(analysis) = analysis {
+        tables.extend(bias_csv::tables(&suite, analysis)?);
+    }
+    for (name, content) in tables {
         std::fs::write(output.join(name), content).map_err(unwritable)?;
     }
-    let pictures = figures::all(&suite)?;
+    let pictures = figures::all(&suite, analysis.ok())?;
     let progress = bar("figures", pictures.len())?;
     for (name, drawing) in &pictures {
         std::fs::write(output.join(name).with_extension("svg"), drawing.svg()?).map_err(unwritable)?;
@@ -98,7 +112,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     progress.finish();
 
     let names: Vec<_> = pictures.iter().map(|(name, _)| *name).collect();
-    let table = report::text(&suite, arguments.threads, elapsed);
+    let table = report::text(&suite, analysis, arguments.threads, elapsed)?;
     let (names, folder) = (names.join(", "), output.display());
     say(&format!("{table}\nFigures ({names}; PNG and SVG) and tables (CSV) are in {folder}\n"))
 }

@@ -20,17 +20,17 @@ pub(crate) struct Preset {
 pub(crate) const PRESETS: [Preset; 3] = [
     Preset {
         name: "quick",
-        size: 96,
-        length: 300.0,
+        size: 128,
+        length: 500.0,
         seeds: 12,
         steps: 12,
         mesh_factor: 2,
-        cost: "2 minutes; 0.2 GB a thread",
+        cost: "6 minutes; 0.5 GB a thread",
     },
     Preset {
         name: "medium",
         size: 256,
-        length: 500.0,
+        length: 750.0,
         seeds: 12,
         steps: 15,
         mesh_factor: 2,

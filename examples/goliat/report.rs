@@ -6,6 +6,9 @@ use std::time::Duration;
 
 use fixpair::cosmology::Cosmology;
 
+use crate::Failure;
+use crate::bias_report;
+use crate::fnl::Analysis;
 use crate::late_report;
 use crate::redshift_space::Multipoles;
 use crate::statistics::{
@@ -53,7 +56,15 @@ fn power_line(title: &str, sigma: [f64; 3], reference: [f64; 3], rho: &str) -> S
 }
 
 /// The table that a person reads.
-pub(crate) fn text(suite: &Suite, threads: usize, elapsed: Duration) -> String {
+///
+/// # Errors
+/// Of the kernels that say what is significant.
+pub(crate) fn text(
+    suite: &Suite,
+    analysis: Result<&Analysis, &str>,
+    threads: usize,
+    elapsed: Duration,
+) -> Result<String, Failure> {
     let configuration = &suite.configuration;
     let (size, length, fnl) = (configuration.size, configuration.length, configuration.fnl);
     let Cosmology { omega_m, omega_de, n_s, .. } = Cosmology::goliat();
@@ -70,7 +81,8 @@ pub(crate) fn text(suite: &Suite, threads: usize, elapsed: Duration) -> String {
     squeezed_table(&mut text, suite);
     multipole_table(&mut text, suite);
     late_report::write(&mut text, suite);
-    text
+    bias_report::write(&mut text, suite, analysis)?;
+    Ok(text)
 }
 
 fn power_table(text: &mut String, suite: &Suite) {

@@ -6,6 +6,10 @@
 
 use std::ops::Range;
 
+use fixpair::status::Result;
+use fixpair::variance::matched::matched_difference;
+use fixpair::variance::pairs::pair_average;
+
 use crate::measurement::{Bins, Measurement};
 use crate::suite::{Amplitude, Half, Phase, Suite, Variant};
 
@@ -41,16 +45,16 @@ impl Kind {
     }
 
     /// Simulations that one estimate costs.
-    const fn cost(self) -> f64 {
+    pub(crate) const fn simulations(self) -> u64 {
         match self {
-            Self::Normal | Self::Fixed => 1.0,
-            Self::NormalPaired | Self::FixedPaired => 2.0,
+            Self::Normal | Self::Fixed => 1,
+            Self::NormalPaired | Self::FixedPaired => 2,
         }
     }
 
     /// Standard deviation per simulation: that of the estimates, times the root of what one costs.
     pub(crate) fn sigma(self, estimates: &[f64]) -> f64 {
-        self.cost().sqrt() * deviation(estimates)
+        (self.simulations() as f64).sqrt() * deviation(estimates)
     }
 }
 
@@ -80,8 +84,7 @@ pub(crate) fn correlation(a: &[f64], b: &[f64]) -> Option<f64> {
     if sigma_a <= STILL * scale || sigma_b <= STILL * scale {
         return None;
     }
-    let sum: f64 = a.iter().zip(b).map(|(a, b)| (a - centre_a) * (b - centre_b)).sum();
-    Some(sum / ((a.len() - 1) as f64 * sigma_a * sigma_b))
+    matched_difference(a, b).ok().map(|difference| difference.correlation)
 }
 
 /// One estimate for each seed: of the original, or the average of the pair.
@@ -100,6 +103,26 @@ pub(crate) fn estimates(
             }
         })
         .collect()
+}
+
+/// One spectrum for each seed: of the original, or the average of the pair (Eq. pair).
+pub(crate) fn spectra(
+    suite: &Suite,
+    kind: Kind,
+    half: Half,
+    quantity: impl Fn(&Measurement) -> &[f64],
+) -> Result<Vec<Vec<f64>>> {
+    let spectrum =
+        |seed, phase| quantity(suite.get(seed, Variant { amplitude: kind.amplitude(), phase, half }));
+    let of = |seed| {
+        let original = spectrum(seed, Phase::Original);
+        let mut spectra = original.to_vec();
+        if kind.simulations() == 2 {
+            pair_average(&mut spectra, original, spectrum(seed, Phase::Inverted))?;
+        }
+        Ok(spectra)
+    };
+    (0..suite.seeds.len()).map(of).collect()
 }
 
 /// Mean and scatter of the squeezed bispectrum of one type of simulation, triangle by triangle; its ratio is to sigma in a Gaussian field.
@@ -211,8 +234,13 @@ pub(crate) mod tests {
                 measurements.push(Measurement { early, late });
             }
         }
-        let configuration =
-            Configuration { size: 16, length: 1.0, fnl: 100.0, linear_multipoles: Default::default() };
+        let configuration = Configuration {
+            size: 16,
+            length: 1.0,
+            fnl: 100.0,
+            k_max: 0.09,
+            linear_multipoles: Default::default(),
+        };
         let bins = Bins {
             k: vec![0.1, 0.2],
             modes: vec![8, 200],

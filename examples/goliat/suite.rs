@@ -86,6 +86,8 @@ pub(crate) struct Configuration {
     pub(crate) length: f64,
     /// f_NL of the half that is not Gaussian (local, CMB convention).
     pub(crate) fnl: f64,
+    /// Largest k of the fits of bias, h/Mpc.
+    pub(crate) k_max: f64,
     /// Linear theory of the multipoles in redshift space, averaged over the modes of each bin, (Mpc/h)^3.
     pub(crate) linear_multipoles: Multipoles,
 }
@@ -164,7 +166,7 @@ impl Suite {
     /// # Errors
     /// The first failure of a measurement, or of writing.
     pub(crate) fn run(arguments: &Arguments, watch: &Watch<'_>) -> Result<Self, Failure> {
-        let Arguments { size, length, fnl, steps, mesh_factor, checkpoint, .. } = *arguments;
+        let Arguments { size, length, fnl, k_max, steps, mesh_factor, checkpoint, .. } = *arguments;
         let need = memory(size, mesh_factor)?;
         let [workers, threads] = share(arguments.threads, need, available());
         let pool = if threads > 1 { Some(Threads::new(threads)?) } else { None };
@@ -172,7 +174,7 @@ impl Suite {
         let universe = Universe::new(size, length, exec)?;
         let triangles = Triangles::new(&universe)?;
         let configuration =
-            Configuration { size, length, fnl, linear_multipoles: linear_multipoles(&universe)? };
+            Configuration { size, length, fnl, k_max, linear_multipoles: linear_multipoles(&universe)? };
         let store = Store::new(&arguments.output, key(arguments))?;
         let stepped = || (watch.advance)(1);
         let plan = Plan { steps, mesh_factor, checkpoint, store: &store, stepped: &stepped };

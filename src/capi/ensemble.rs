@@ -320,6 +320,7 @@ pub unsafe extern "C" fn fixpair_pair_average(
 }
 
 /// Scatter per simulation: sqrt(simulations) times the standard deviation of estimates (Eq. sigma_paired), with its error sigma/sqrt(2 (N - 1)) (Eq. errerr).
+/// It compares types of simulations. A likelihood of pair averages takes the scatter of one average: the deviation itself.
 ///
 /// Out: sigma, error  len doubles each
 /// In:  deviation     len standard deviations over estimates, with N - 1

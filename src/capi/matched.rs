@@ -16,6 +16,7 @@ pub const FIXPAIR_BETA_GIVEN: i32 = 0;
 pub const FIXPAIR_BETA_OPTIMAL: i32 = 1;
 
 /// The difference of matched estimates, Delta f = f100 - f0 (Avila & Adame 2022, Eq. diff), with both scatters, their correlation, and its own.
+/// f100 is the first, f0 the second.
 ///
 /// Out: difference
 /// In:  first, second  len estimates each, of the same seeds in the same order; a pair is one estimate
@@ -149,7 +150,8 @@ pub unsafe extern "C" fn fixpair_control_variates_scratch(
 ///
 ///     beta = cov(y, c)/(var(c) + N error^2)
 ///
-/// The error is that of a regression: it pays for estimating beta, on average with fixpair_control_variate_loss, and for the error of mu.
+/// The error is that of a regression: it pays for estimating beta, on average with fixpair_control_variate_loss, and for the error of mu. The optimal
+/// beta trusts mu: where the model that gives it is wrong, <c> - mu is many errors from 0, the result is shifted by beta times that, and its error grows.
 ///
 /// Out: values   values_len structs, one for each value of a sample
 /// In:  y, c     samples x values_len doubles each, row by row; a pair is one sample

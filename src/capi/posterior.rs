@@ -27,7 +27,7 @@ pub const FIXPAIR_FREE_F_NL: u32 = 4;
 ///
 /// Out: fit         the minimum, errors from the curvature there, covariance, chi^2, degrees of freedom
 /// In:  likelihood
-///      start       the parameters that are not free, and a place to begin; the others need not be near
+///      start       the parameters that are not free, and a place to begin, which need not be near: those of fixpair_bias_init do
 ///      free        FIXPAIR_FREE_... together
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for other sets of parameters, FIXPAIR_ERROR_RANGE for delta_c that is not positive, or
 ///          numbers that no data have made, FIXPAIR_ERROR_SINGULAR where the data do not constrain a parameter (p where f_NL = 0, f_NL where b_g = p), FIXPAIR_ERROR_CONVERGENCE

@@ -131,7 +131,7 @@ pub unsafe extern "C" fn fixpair_sigma_suppressed(
 ///      k, power, modes, noise as for fixpair_sigma_suppressed; with noise = 0 f_sn is 1 and has no error
 ///      estimates  N, independent ones; not read where there are errors
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for k, modes, sigma or errors that are not positive, or negative noise,
-///          FIXPAIR_ERROR_SAMPLES for fewer bins than parameters or fewer than two estimates, FIXPAIR_ERROR_SINGULAR where the data have no step, FIXPAIR_ERROR_CONVERGENCE
+///          FIXPAIR_ERROR_SAMPLES for fewer bins than parameters or fewer than two estimates, FIXPAIR_ERROR_SINGULAR where the data have no step (use the measured scatter, or that of fixpair_sigma_gaussian), FIXPAIR_ERROR_CONVERGENCE
 /// Cost: 5 microseconds a bin and search, some ten searches without errors
 ///
 /// # Safety

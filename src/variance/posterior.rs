@@ -91,9 +91,9 @@ fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f
         range[axis] = [(centre[axis] - 5.0 * error).max(lowest(axis)), centre[axis] + 5.0 * error];
     }
     let mut least = fit.chi_squared;
-    // At b_g = p no f_NL changes anything: a posterior that has that place has no end, however narrow the way to it.
-    let blind = Bias { b_g: fit.value.p, ..fit.value };
-    if free.numbers() == [0, 2] && blind.b_g > 0.0 && likelihood.at(&blind) < least + REACH {
+    // Where b_g = p all f_NL are the same: a ridge without end, too narrow to be met on an edge.
+    let ridge = free.with(&fit.value, [fit.value.p, 0.0]);
+    if free.numbers() == [0, 2] && ridge.b_g > 0.0 && likelihood.at(&ridge) < least + REACH {
         return Err(Error::Convergence);
     }
     let places = if count == 2 { PLACES } else { 1 };
@@ -108,14 +108,8 @@ fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f
         for axis in 0..count {
             for end in 0..2 {
                 let edge = range[axis][end];
-                // The ridge at b_g = p, that no f_NL ends, is thinner than the places are apart.
-                let on_ridge = if axis == 1 && free.numbers()[1] == 2 && fit.value.p > 0.0 {
-                    likelihood.at(&Bias { b_g: fit.value.p, f_nl: 0.0, ..fit.value })
-                } else {
-                    f64::INFINITY
-                };
                 let lowest_there =
-                    (0..places).map(|i| chi_squared(&range, axis, edge, i)).fold(on_ridge, f64::min);
+                    (0..places).map(|i| chi_squared(&range, axis, edge, i)).fold(f64::INFINITY, f64::min);
                 least = least.min(lowest_there);
                 if lowest_there < least + REACH && edge > lowest(axis) {
                     let step = 0.25 * (range[axis][1] - range[axis][0]);

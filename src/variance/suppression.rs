@@ -76,7 +76,7 @@ impl Scatter<'_> {
         sqrt(2.0 / self.modes[i]) * (self.power[i] * cosmic + at.shot_noise * self.noise)
     }
 
-    /// The best R_cv and f_sn for a given k_soft, and chi^2.
+    /// The best R_cv and f_sn, zero or more, for a given k_soft, and chi^2.
     fn linear(&self, softening: f64, error: &dyn Fn(usize) -> f64) -> Result<(Suppression, f64)> {
         let linear = self.unknowns() - 1;
         let mut triangle = Triangle::<3>::EMPTY;
@@ -87,8 +87,27 @@ impl Scatter<'_> {
             triangle.push(row.map(|x| x / error(i)));
         }
         let [cosmic_variance, shot_noise, _] = triangle.solve(linear)?;
-        let shot_noise = if linear == 2 { shot_noise } else { 1.0 };
-        Ok((Suppression { cosmic_variance, softening, shot_noise }, triangle.0[2][2] * triangle.0[2][2]))
+        let rest = triangle.0[2][2] * triangle.0[2][2];
+        let (mut best, mut chi_squared) = ([cosmic_variance, shot_noise], rest);
+        if cosmic_variance < 0.0 || shot_noise < 0.0 {
+            // Convex: the least of the allowed quarter is on one of its edges.
+            let edge = |axis: usize| {
+                let dot = |j: usize| (0..=axis).map(|i| triangle.0[i][axis] * triangle.0[i][j]).sum::<f64>();
+                let mut place = [0.0; 2];
+                place[axis] = (dot(2) / dot(axis)).max(0.0);
+                let left = triangle.times(&[place[0], place[1], -1.0]);
+                (place, left.iter().map(|x| x * x).sum::<f64>())
+            };
+            (best, chi_squared) = edge(0);
+            if linear == 2 {
+                let other = edge(1);
+                if other.1 < chi_squared {
+                    (best, chi_squared) = other;
+                }
+            }
+        }
+        let shot_noise = if linear == 2 { best[1] } else { 1.0 };
+        Ok((Suppression { cosmic_variance: best[0], softening, shot_noise }, chi_squared))
     }
 
     /// Where k_soft is looked for: the first and last ln k_soft, and the step of the grid.
@@ -193,6 +212,8 @@ impl Scatter<'_> {
 /// Errors in proportion to the measured scatter, which Eq. errerr has, favour bins that happen to scatter little: sigma_r then comes out low by
 /// about 1/N. [`fit_suppression`] does not.
 ///
+/// R_cv and f_sn are kept at zero or more, without which sigma_r is none; their errors are those of the curvature there too.
+///
 /// # Errors
 /// `Length` for arrays of different lengths, `Samples` for fewer bins than parameters, `NotFinite`, `Range` for k, modes, sigma or errors that are not
 /// positive, `Singular` where the data have no step.
@@ -208,7 +229,7 @@ pub fn fit_suppression_weighted(scatter: &Scatter<'_>, error: &[f64]) -> Result<
 }
 
 /// Fits sigma_r to the scatter of so many independent estimates, with errors sigma_r/sqrt(2 (N - 1)) (Eq. errerr) of the model itself,
-/// found by iteration.
+/// found by iteration. R_cv and f_sn are zero or more.
 ///
 /// # Errors
 /// As [`fit_suppression_weighted`]; `Samples` for fewer than two estimates; `Convergence` if the errors do not settle.

@@ -1,8 +1,12 @@
 //! The figures, in the style of the paper: Normal in red, Fixed in blue, their inverted in magenta and
 //! cyan; a light shade is the scatter of one simulation, a dark one the error of the mean.
 
+mod bias;
 mod bispectrum;
+mod histograms;
 mod multipoles;
+mod pairs;
+mod posteriors;
 mod ratio;
 mod scatter;
 mod slice;
@@ -12,6 +16,7 @@ mod squeezed;
 use crate::Failure;
 use crate::axes::{Axes, Axis, Key, MARGIN_BOTTOM, MARGIN_LEFT};
 use crate::drawing::{Area, Colour, Drawing, Pen};
+use crate::fnl::Analysis;
 use crate::statistics::{Band, Kind};
 use crate::suite::{Amplitude, Half, Suite};
 
@@ -24,9 +29,12 @@ const GREY: Colour = Colour::new(110, 110, 110);
 /// File name without extension, and drawing, of each figure.
 ///
 /// # Errors
-/// If the suite lacks the slices or multipoles of its first seed.
-pub(crate) fn all(suite: &Suite) -> Result<[(&'static str, Drawing); 7], Failure> {
-    Ok([
+/// If the suite lacks the slices or multipoles of its first seed, and those of kernels.
+pub(crate) fn all(
+    suite: &Suite,
+    analysis: Option<&Analysis>,
+) -> Result<Vec<(&'static str, Drawing)>, Failure> {
+    let mut figures = vec![
         ("spectra", spectra::draw(suite)),
         ("scatter", scatter::draw(suite)),
         ("slice", slice::draw(suite)?),
@@ -34,7 +42,16 @@ pub(crate) fn all(suite: &Suite) -> Result<[(&'static str, Drawing); 7], Failure
         ("squeezed", squeezed::draw(suite)),
         ("bispectrum", bispectrum::draw(suite)),
         ("multipoles", multipoles::draw(suite)?),
-    ])
+    ];
+    if let Some(analysis) = analysis {
+        figures.extend([
+            ("bias", bias::draw(suite, analysis)?),
+            ("posteriors", posteriors::draw(suite, analysis)?),
+            ("pairs", pairs::draw(suite, analysis)?),
+            ("histograms", histograms::draw(suite, analysis)?),
+        ]);
+    }
+    Ok(figures)
 }
 
 const fn colour(amplitude: Amplitude) -> Colour {
@@ -51,11 +68,30 @@ fn half_title(suite: &Suite, half: Half) -> String {
 /// The line of each type where all four are compared.
 const fn pen(kind: Kind) -> Pen {
     match kind {
-        Kind::Normal => Pen::solid(NORMAL, 1.8),
-        Kind::NormalPaired => Pen::dashed(NORMAL_PAIRED, 1.8),
-        Kind::Fixed => Pen::solid(FIXED, 1.8),
-        Kind::FixedPaired => Pen::dashed(FIXED_PAIRED, 1.8),
+        Kind::Normal | Kind::Fixed => Pen::solid(shade(kind), 1.8),
+        Kind::NormalPaired | Kind::FixedPaired => Pen::dashed(shade(kind), 1.8),
     }
+}
+
+/// The colour of each type where all four are compared.
+const fn shade(kind: Kind) -> Colour {
+    match kind {
+        Kind::Normal => NORMAL,
+        Kind::NormalPaired => NORMAL_PAIRED,
+        Kind::Fixed => FIXED,
+        Kind::FixedPaired => FIXED_PAIRED,
+    }
+}
+
+/// An axis that holds all values, if there are any, and a margin.
+fn holding(values: impl Iterator<Item = f64>, margin: f64) -> Axis {
+    let (low, high) = values
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+    if low > high {
+        return Axis::linear(0.0, 1.0);
+    }
+    let room = margin * (high - low);
+    Axis::linear(low - room, high + room)
 }
 
 /// All of k with a little room at the ends.

@@ -1,6 +1,6 @@
 //! f_NL from the bispectrum: original against inverted seed by seed, and what each way of estimating it scatters.
 
-use super::{FIXED, FIXED_PAIRED, GREY, MARGIN_TOP, NORMAL, NORMAL_PAIRED, Suite, colour};
+use super::{FIXED, GREY, MARGIN_TOP, NORMAL, Suite, colour, holding, shade};
 use crate::axes::{Axes, Axis, Key, MARGIN_BOTTOM, MARGIN_LEFT};
 use crate::drawing::{Area, Colour, Drawing, Pen};
 use crate::statistics::{Kind, differences, error_of_mean, estimates, mean};
@@ -11,29 +11,12 @@ const PANEL: f64 = 400.0;
 const NAMES: f64 = 225.0;
 const RIGHT: f64 = 430.0;
 
-const fn shade(kind: Kind) -> Colour {
-    match kind {
-        Kind::Normal => NORMAL,
-        Kind::NormalPaired => NORMAL_PAIRED,
-        Kind::Fixed => FIXED,
-        Kind::FixedPaired => FIXED_PAIRED,
-    }
-}
-
 pub(super) fn draw(suite: &Suite) -> Drawing {
     let width = MARGIN_LEFT + PANEL + NAMES + RIGHT + 18.0;
     let mut drawing = Drawing::new(width, MARGIN_TOP + PANEL + MARGIN_BOTTOM);
     draw_pairs(&mut drawing, suite, Area::new(MARGIN_LEFT, MARGIN_TOP, PANEL, PANEL));
     draw_strips(&mut drawing, suite, Area::new(MARGIN_LEFT + PANEL + NAMES, MARGIN_TOP, RIGHT, PANEL));
     drawing
-}
-
-/// An axis that holds all values and a margin.
-fn holding(values: impl Iterator<Item = f64>, margin: f64) -> Axis {
-    let (low, high) = values
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
-    let room = margin * (high - low);
-    Axis::linear(low - room, high + room)
 }
 
 fn draw_pairs(drawing: &mut Drawing, suite: &Suite, area: Area) {

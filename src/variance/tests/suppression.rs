@@ -235,3 +235,24 @@ fn scatter_that_is_none_is_refused() {
     assert_eq!(fit_suppression(&two, 41), Err(Error::Samples));
     assert_eq!(fit_suppression_weighted(&two, &sigma[..2]), Err(Error::Samples));
 }
+
+#[test]
+fn a_step_sharper_than_the_model_is_fitted_with_nothing_left_of_cosmic_variance() {
+    const BINS: usize = 20;
+    let k: [f64; BINS] = core::array::from_fn(|i| 0.0125 * (i as f64 + 1.4));
+    let modes: [f64; BINS] = core::array::from_fn(|i| 26.0 * ((i + 1) * (i + 1)) as f64);
+    let power: [f64; BINS] = core::array::from_fn(|i| 1.6e5 / (1.0 + 100.0 * k[i] * k[i]));
+    let noise = 6.4e4;
+    // Rises as k^2, where the model's step does as k.
+    let sigma: [f64; BINS] = core::array::from_fn(|i| {
+        let cosmic = (k[i] / 0.12) * (k[i] / 0.12);
+        (2.0 / modes[i]).sqrt() * (power[i] * (cosmic / (1.0 + cosmic)) + noise)
+    });
+    let scatter = Scatter { sigma: &sigma, k: &k, power: &power, modes: &modes, noise };
+    let fit = fit_suppression(&scatter, 12).unwrap();
+    assert_eq!(fit.value.cosmic_variance, 0.0);
+    assert!(fit.value.shot_noise > 0.0 && fit.error.cosmic_variance > 0.0);
+    let mut model = [0.0; BINS];
+    sigma_suppressed(&mut model, &fit.value, &k, &power, &modes, noise).unwrap();
+    assert!(model.iter().zip(&sigma).all(|(model, sigma)| (model / sigma - 1.0).abs() < 0.25), "{model:?}");
+}
