@@ -173,7 +173,7 @@ pub(crate) mod tests {
 
     /// Uniform in (-sqrt 3, sqrt 3): mean 0, deviation 1; the same for all halves, and turned for the inverted.
     fn draw(seed: usize, bin: usize) -> f64 {
-        let mut state = (seed * 64 + bin + 1) as u64 * 0x9e37_79b9_7f4a_7c15;
+        let mut state = ((seed * 64 + bin + 1) as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         state ^= state >> 29;
         state = state.wrapping_mul(0xbf58_476d_1ce4_e5b9);
         state ^= state >> 32;
