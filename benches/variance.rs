@@ -93,13 +93,13 @@ fn peer() -> Vec<(String, f64)> {
 fn compare(c: &mut Criterion, peers: &[(String, f64)], name: &str, mut run: impl FnMut()) {
     c.bench_function(name, |b| b.iter(&mut run));
     let Some((_, theirs)) = peers.iter().find(|(peer, _)| peer == name) else { return };
-    // About as long as the peer is given.
-    let mut times: Vec<f64> = (0..9)
-        .map(|_| {
-            let count = (1e-2 / seconds(&mut run).max(1e-7)).ceil() as usize;
-            seconds(|| (0..count).for_each(|_| run())) / count as f64
-        })
-        .collect();
+    // The clock of the processor ticks every few milliseconds.
+    let mut count = 1;
+    while seconds(|| (0..count).for_each(|_| run())) < 0.03 {
+        count *= 2;
+    }
+    let mut times: Vec<f64> =
+        (0..9).map(|_| seconds(|| (0..count).for_each(|_| run())) / count as f64).collect();
     times.sort_by(f64::total_cmp);
     println!("{name}: {:.3e} s, numpy {theirs:.3e} s: x{:.2}", times[4], theirs / times[4]);
 }

@@ -154,6 +154,7 @@ static void refuse_densities(void) {
     REFUSED(FIXPAIR_ERROR_CHOICE, t.a.i[0] = -1);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.d[1] = t.a.d[0]);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.n[0] = 1);
+    REFUSED(FIXPAIR_ERROR_RANGE, t.a.n[1] = 0);
     REFUSED(FIXPAIR_ERROR_RANGE, (t.a.i[0] = 1, t.a.n[1] = 1));
     REFUSED(FIXPAIR_ERROR_RANGE, (t.a.d[0] = -1e308, t.a.d[1] = 1e308));
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.d[1] = DBL_MIN);

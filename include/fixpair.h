@@ -4000,7 +4000,7 @@ fixpair_status_t fixpair_continuum_modes(double *modes,
                                          double box_size);
 
 /*
- * The exact number of modes with edges[b] <= |n|^2 < edges[b + 1], n the integers k L/(2 pi), counting n and -n: 26, 66, 158, 234, ... of edges 1, 4, 9, 16, ...
+ * The exact number of modes with edges[b] <= |n|^2 < edges[b + 1], n the integers k L/(2 pi), counting n and -n: 26, 66, 158, 234, ... of edges 1, 4, 9, 16, ... An edge of 0 counts n = 0 too
  *
  * Out: counts  edges_len - 1 numbers
  * In:  edges   edges_len integers, increasing
@@ -4367,7 +4367,7 @@ fixpair_status_t fixpair_bias_grid(double *chi_squared,
  * In:  chi_squared  points_first x points_second doubles, the second fastest; 1 for the second of a grid of one parameter
  *      axis         0 for the first parameter, 1 for the second
  *      low, high    the ends of its range, in whose inverse unit the density comes
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for another axis, FIXPAIR_ERROR_RANGE for an axis of one point, or a range
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for another axis, FIXPAIR_ERROR_RANGE for an axis of one point, another without points, or a range
  *          that is empty or too extreme
  */
 fixpair_status_t fixpair_marginal(double *density,
@@ -4658,7 +4658,7 @@ fixpair_status_t fixpair_carpool_scratch(struct fixpair_layout *scratch, size_t 
  *      controls
  *      scratch     scratch_len bytes
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _SCRATCH, FIXPAIR_ERROR_LENGTH for no values or controls, FIXPAIR_ERROR_SAMPLES unless N >= controls + 3,
- *          FIXPAIR_ERROR_SINGULAR where controls are combinations of others, FIXPAIR_ERROR_RANGE for samples beyond 1e140, a covariance that is not symmetric, or a result that overflows
+ *          FIXPAIR_ERROR_SINGULAR where controls are combinations of others or mu has a variance of 0 (leave out its covariance), FIXPAIR_ERROR_RANGE for samples beyond 1e140, a covariance that is not symmetric, or a result that overflows
  */
 fixpair_status_t fixpair_carpool(double *mean,
                                  double *covariance,

@@ -102,7 +102,7 @@ pub unsafe extern "C" fn fixpair_carpool_scratch(
 ///      controls
 ///      scratch     scratch_len bytes
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _SCRATCH, FIXPAIR_ERROR_LENGTH for no values or controls, FIXPAIR_ERROR_SAMPLES unless N >= controls + 3,
-///          FIXPAIR_ERROR_SINGULAR where controls are combinations of others, FIXPAIR_ERROR_RANGE for samples beyond 1e140, a covariance that is not symmetric, or a result that overflows
+///          FIXPAIR_ERROR_SINGULAR where controls are combinations of others or mu has a variance of 0 (leave out its covariance), FIXPAIR_ERROR_RANGE for samples beyond 1e140, a covariance that is not symmetric, or a result that overflows
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.

@@ -199,7 +199,7 @@ pub unsafe extern "C" fn fixpair_bias_grid(
 /// In:  chi_squared  points_first x points_second doubles, the second fastest; 1 for the second of a grid of one parameter
 ///      axis         0 for the first parameter, 1 for the second
 ///      low, high    the ends of its range, in whose inverse unit the density comes
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for another axis, FIXPAIR_ERROR_RANGE for an axis of one point, or a range
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_CHOICE for another axis, FIXPAIR_ERROR_RANGE for an axis of one point, another without points, or a range
 ///          that is empty or too extreme
 ///
 /// # Safety

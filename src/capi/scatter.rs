@@ -34,7 +34,7 @@ pub unsafe extern "C" fn fixpair_continuum_modes(
     })())
 }
 
-/// The exact number of modes with edges[b] <= |n|^2 < edges[b + 1], n the integers k L/(2 pi), counting n and -n: 26, 66, 158, 234, ... of edges 1, 4, 9, 16, ...
+/// The exact number of modes with edges[b] <= |n|^2 < edges[b + 1], n the integers k L/(2 pi), counting n and -n: 26, 66, 158, 234, ... of edges 1, 4, 9, 16, ... An edge of 0 counts n = 0 too
 ///
 /// Out: counts  edges_len - 1 numbers
 /// In:  edges   edges_len integers, increasing

@@ -157,38 +157,72 @@ fn check_inside(likelihood: &BiasLikelihood, at: &Bias, free: &Free) -> Result<(
     Ok(())
 }
 
-/// The lowest of the minima that are found from `start` and from the bias that fits best without f_NL.
-pub(super) fn minimum(likelihood: &BiasLikelihood, start: &Bias, free: &Free) -> Result<(Bias, f64)> {
-    let column = |j: usize| (0..=j).map(|i| likelihood.root[i][j] * likelihood.root[i][j]).sum::<f64>();
+/// Visits the minima that are found, and returns the lowest.
+///
+/// P_hh is b(k)^2, so besides the valley of a bias of one sign there may be another where b(k) changes sign: with x/alpha at small k turned into -x/alpha - 2 b_g. Descents begin at
+/// `start`, at the bias that fits best without f_NL, and on the other side of what they find.
+pub(super) fn minima(
+    likelihood: &BiasLikelihood,
+    start: &Bias,
+    free: &Free,
+    mut visit: impl FnMut(&Bias, f64),
+) -> Result<(Bias, f64)> {
+    let square = |j: usize| (0..=j).map(|i| likelihood.root[i][j] * likelihood.root[i][j]).sum::<f64>();
     let on =
-        |j: usize| (0..=j).map(|i| likelihood.root[i][j] * likelihood.root[i][5]).sum::<f64>() / column(j);
-    let b_g = if column(0) > 0.0 { sqrt(on(0).abs()) } else { on(3).abs() };
+        |j: usize| (0..=j).map(|i| likelihood.root[i][j] * likelihood.root[i][5]).sum::<f64>() / square(j);
+    let b_g = if square(0) > 0.0 { sqrt(on(0).abs()) } else { on(3).abs() };
     let plain = Bias { b_g, ..*start };
-    let none = Bias { f_nl: 0.0, ..plain };
     let mut best: Result<(Bias, f64)> = Err(Error::Singular);
-    for place in [*start, plain, none] {
+    let mut descend_from = |place: Bias, best: &mut Result<(Bias, f64)>| {
         // Of what is not free the caller's value holds.
         let place = free.with(start, free.of(&place));
         let positive = place.b_g > 0.0;
         if free.b_g() && !positive {
-            continue;
+            return;
         }
         let found = descend(likelihood, &place, free);
         let found = found.and_then(|of| check_inside(likelihood, &of.0, free).map(|()| of));
-        match (found, best) {
-            (Ok(new), Ok(old)) if old.1 <= new.1 => best = Ok(old),
-            (Ok(new), _) => best = Ok(new),
-            (Err(error), Err(_)) => best = Err(error),
+        if let Ok((at, chi_squared)) = found {
+            visit(&at, chi_squared);
+        }
+        match (found, &*best) {
+            (Ok(new), Ok(old)) if old.1 <= new.1 => {}
+            (Ok(new), _) => *best = Ok(new),
+            (Err(error), Err(_)) => *best = Err(error),
             (Err(_), Ok(_)) => {}
+        }
+    };
+    for place in [*start, plain, Bias { f_nl: 0.0, ..plain }] {
+        descend_from(place, &mut best);
+    }
+    if square(0) > 0.0 {
+        // alpha where most of the data are, and where f_NL shows most.
+        for alpha in [sqrt(square(0) / square(1)), sqrt(square(1) / square(2))] {
+            let Ok((near, _)) = best else { break };
+            descend_from(across(&near, alpha, free), &mut best);
         }
     }
     best
 }
 
+/// The place where b(k) has the other sign at this alpha.
+fn across(at: &Bias, alpha: f64, free: &Free) -> Bias {
+    let x = -2.0 * at.b_g * alpha - at.shift();
+    match free.numbers() {
+        [.., 2] => Bias { f_nl: x / (2.0 * at.delta_c * (at.b_g - at.p)), ..*at },
+        [.., 1] => Bias { p: at.b_g - x / (2.0 * at.delta_c * at.f_nl), ..*at },
+        // b_g + x/alpha is linear in b_g.
+        _ => {
+            let slope = 1.0 + 2.0 * at.delta_c * at.f_nl / alpha;
+            Bias { b_g: at.b_g - 2.0 * (at.b_g + at.shift() / alpha) / slope, ..*at }
+        }
+    }
+}
+
 /// The best values of the parameters in `free` (FREE_...), the others as in `start`.
 ///
 /// The paper's cases: (i) b_g, (ii) b_g and p, (iii) b_g and f_NL; each of the three alone too. b_g > 0, since P_hh is the same for all signs turned.
-/// What is free need not be near: descents begin at `start` and at the bias of the spectrum itself.
+/// What is free need not be near: descents begin at `start`, at the bias of the spectrum itself, and where b(k) would change sign.
 ///
 /// # Errors
 /// `NotFinite`, `Choice` for other sets of parameters, `Range` for delta_c that is not positive, `Singular` where the data do not constrain a parameter (p where f_NL = 0,
@@ -197,8 +231,18 @@ pub fn fit_bias(likelihood: &BiasLikelihood, start: &Bias, free: u32) -> Result<
     let free = Free::new(free)?;
     likelihood.check()?;
     start.check()?;
-    let (value, chi_squared) = minimum(likelihood, start, &free)?;
-    let inverse = linearised(likelihood, &value, &free).covariance(free.numbers().len())?;
+    let (value, chi_squared) = minima(likelihood, start, &free, |_, _| {})?;
+    finish(likelihood, value, chi_squared, &free)
+}
+
+/// Standard errors of the free parameters at a minimum.
+pub(super) fn errors(likelihood: &BiasLikelihood, at: &Bias, free: &Free) -> Result<[f64; 2]> {
+    let inverse = linearised(likelihood, at, free).covariance(free.numbers().len())?;
+    Ok([0, 1].map(|axis| sqrt(inverse[axis][axis])))
+}
+
+fn finish(likelihood: &BiasLikelihood, value: Bias, chi_squared: f64, free: &Free) -> Result<BiasFit> {
+    let inverse = linearised(likelihood, &value, free).covariance(free.numbers().len())?;
     let mut covariance = [0.0; 9];
     for (i, &row) in free.numbers().iter().enumerate() {
         for (j, &column) in free.numbers().iter().enumerate() {

@@ -41,7 +41,7 @@ const REACH: u64 = 1 << 14;
 
 /// The exact number of modes n, integers in three dimensions, with edges[b] <= |n|^2 < edges[b + 1]: n and -n are two.
 ///
-/// Modes beyond the Nyquist frequency of some mesh are counted too. Cost: n^2/8 square roots for each edge, n the largest |n|.
+/// Modes beyond the Nyquist frequency of some mesh are counted too, and n = 0 by an edge of 0. Cost: n^2/8 square roots for each edge, n the largest |n|.
 ///
 /// # Errors
 /// `Length` unless there is one number fewer than edges, `Table` for fewer than two edges or edges that do not increase, `Range` for an edge

@@ -5,7 +5,7 @@
 
 use super::bias::Bias;
 use super::check::{finite, result, same_length};
-use super::fit::{BiasFit, Free, fit_bias};
+use super::fit::{BiasFit, Free, errors, fit_bias, minima};
 use super::likelihood::BiasLikelihood;
 use crate::math::sqrt;
 use crate::scratch::{Arena, Layout};
@@ -17,6 +17,8 @@ const REACH: f64 = 25.0;
 const PLACES: usize = 65;
 /// How often a range may grow, by a quarter each time.
 const GROWTHS: usize = 100;
+/// How often a search may find a lower place than the fit it began with.
+const ATTEMPTS: usize = 5;
 
 /// Uniform grids of one or two parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,48 +74,104 @@ pub fn bias_range(
     fixed: &Bias,
     free: u32,
 ) -> Result<()> {
-    let fit = fit_bias(likelihood, fixed, free)?;
-    let free = Free::new(free)?;
-    same_length(free.numbers().len(), &[ranges.len()])?;
-    let (found, _) = range(likelihood, &fit, &free)?;
+    let numbers = Free::new(free)?;
+    same_length(numbers.numbers().len(), &[ranges.len()])?;
+    let (_, found) = locate(likelihood, fixed, free)?;
     ranges.copy_from_slice(&found[..ranges.len()]);
     Ok(())
 }
 
-/// The range, and the least chi^2 that was seen.
-fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f64; 2]; 2], f64)> {
-    let count = free.numbers().len();
-    let centre = free.of(&fit.value);
-    let lowest = |axis: usize| if free.numbers()[axis] == 0 { 0.0 } else { f64::NEG_INFINITY };
-    let mut range = [[0.0; 2]; 2];
-    for axis in 0..count {
-        let error = fit.error[free.numbers()[axis]];
-        range[axis] = [(centre[axis] - 5.0 * error).max(lowest(axis)), centre[axis] + 5.0 * error];
+/// The fit and the range. Where the search for the range meets a place lower than the fit, both are done again from there.
+fn locate(likelihood: &BiasLikelihood, start: &Bias, mask: u32) -> Result<(BiasFit, [[f64; 2]; 2])> {
+    let free = Free::new(mask)?;
+    let mut from = *start;
+    for _ in 0..ATTEMPTS {
+        let fit = fit_bias(likelihood, &from, mask)?;
+        let (range, lowest) = range(likelihood, &from, &fit, &free)?;
+        if lowest.chi_squared >= fit.chi_squared - 1e-9 * (1.0 + fit.chi_squared) {
+            return Ok((fit, range));
+        }
+        from = lowest.place;
     }
-    let mut least = fit.chi_squared;
+    Err(Error::Convergence)
+}
+
+/// The lowest place of a search.
+#[derive(Clone, Copy)]
+struct Lowest {
+    chi_squared: f64,
+    place: Bias,
+}
+
+/// Where the chi^2 of a range is looked at.
+struct Scan<'a> {
+    likelihood: &'a BiasLikelihood,
+    fixed: Bias,
+    free: &'a Free,
+    /// Places on the other axis.
+    places: usize,
+    lowest: Lowest,
+}
+
+impl Scan<'_> {
+    /// The least chi^2 where parameter `axis` has one value.
+    fn across(&mut self, range: &[[f64; 2]; 2], axis: usize, value: f64) -> f64 {
+        let mut least = f64::INFINITY;
+        for i in 0..self.places {
+            let mut values = [value; 2];
+            values[1 - axis] = at(range[1 - axis], self.places, i);
+            let place = self.free.with(&self.fixed, values);
+            let chi_squared = self.likelihood.at(&place);
+            least = least.min(chi_squared);
+            if chi_squared < self.lowest.chi_squared {
+                self.lowest = Lowest { chi_squared, place };
+            }
+        }
+        least
+    }
+}
+
+/// The range, and the lowest place that was seen on the way.
+fn range(
+    likelihood: &BiasLikelihood,
+    start: &Bias,
+    fit: &BiasFit,
+    free: &Free,
+) -> Result<([[f64; 2]; 2], Lowest)> {
+    let count = free.numbers().len();
+    let floor = |axis: usize| if free.numbers()[axis] == 0 { 0.0 } else { f64::NEG_INFINITY };
     // Where b_g = p all f_NL are the same: a ridge without end, too narrow to be met on an edge.
     let ridge = free.with(&fit.value, [fit.value.p, 0.0]);
-    if free.numbers() == [0, 2] && ridge.b_g > 0.0 && likelihood.at(&ridge) < least + REACH {
+    if free.numbers() == [0, 2] && ridge.b_g > 0.0 && likelihood.at(&ridge) < fit.chi_squared + REACH {
         return Err(Error::Convergence);
     }
+    // All valleys that are deep enough.
+    let mut range = [[f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]];
+    minima(likelihood, start, free, |place, chi_squared| {
+        let Ok(errors) = errors(likelihood, place, free) else { return };
+        if chi_squared < fit.chi_squared + REACH {
+            for (axis, (centre, error)) in free.of(place).into_iter().zip(errors).enumerate() {
+                range[axis] =
+                    [range[axis][0].min(centre - 5.0 * error), range[axis][1].max(centre + 5.0 * error)];
+            }
+        }
+    })?;
+    for (axis, range) in range.iter_mut().enumerate().take(count) {
+        range[0] = range[0].max(floor(axis));
+    }
+    let lowest = Lowest { chi_squared: fit.chi_squared, place: fit.value };
     let places = if count == 2 { PLACES } else { 1 };
-    let chi_squared = |range: &[[f64; 2]; 2], axis: usize, value: f64, place: usize| {
-        let mut values = [value; 2];
-        values[1 - axis] = at(range[1 - axis], places, place);
-        likelihood.at(&free.with(&fit.value, values))
-    };
+    let mut scan = Scan { likelihood, fixed: fit.value, free, places, lowest };
     // Edges move out until the density has vanished on all of them.
     for growth in 0.. {
         let mut grown = false;
         for axis in 0..count {
             for end in 0..2 {
                 let edge = range[axis][end];
-                let lowest_there =
-                    (0..places).map(|i| chi_squared(&range, axis, edge, i)).fold(f64::INFINITY, f64::min);
-                least = least.min(lowest_there);
-                if lowest_there < least + REACH && edge > lowest(axis) {
+                let least = scan.across(&range, axis, edge);
+                if least < scan.lowest.chi_squared + REACH && edge > floor(axis) {
                     let step = 0.25 * (range[axis][1] - range[axis][0]);
-                    range[axis][end] = if end == 0 { (edge - step).max(lowest(axis)) } else { edge + step };
+                    range[axis][end] = if end == 0 { (edge - step).max(floor(axis)) } else { edge + step };
                     grown = true;
                 }
             }
@@ -129,18 +187,18 @@ fn range(likelihood: &BiasLikelihood, fit: &BiasFit, free: &Free) -> Result<([[f
     for _ in 0..2 {
         let before = range;
         for axis in 0..count {
-            let inside = |i: usize| {
-                let value = at(before[axis], PLACES, i);
-                (0..places).any(|place| chi_squared(&before, axis, value, place) < least + REACH)
-            };
-            let first = (0..PLACES).find(|&i| inside(i)).unwrap_or(0);
-            let last = (0..PLACES).rev().find(|&i| inside(i)).unwrap_or(PLACES - 1);
+            let least: [f64; PLACES] =
+                core::array::from_fn(|i| scan.across(&before, axis, at(before[axis], PLACES, i)));
+            let limit = scan.lowest.chi_squared + REACH;
+            let inside = |i: &usize| least[*i] < limit;
+            let first = (0..PLACES).find(inside).unwrap_or(0);
+            let last = (0..PLACES).rev().find(inside).unwrap_or(PLACES - 1);
             let ends = [first.saturating_sub(1), (last + 1).min(PLACES - 1)];
             range[axis] = ends.map(|i| at(before[axis], PLACES, i));
         }
     }
-    finite(range.as_flattened()).map_err(|_| Error::Convergence)?;
-    Ok((range, least))
+    finite(range[..count].as_flattened()).map_err(|_| Error::Convergence)?;
+    Ok((range, scan.lowest))
 }
 
 /// chi^2 on a grid (Eq. chi2), whose marginals and contours the functions below make.
@@ -186,7 +244,7 @@ pub fn marginal(
     same_length(points[0].checked_mul(points[1]).ok_or(Error::Overflow)?, &[chi_squared.len()])?;
     finite(chi_squared)?;
     finite(&range)?;
-    if axis > 1 || points[axis] < 2 || range[1] <= range[0] {
+    if axis > 1 || points[axis] < 2 || points[1 - axis] == 0 || range[1] <= range[0] {
         return Err(Error::Range);
     }
     same_length(points[axis], &[out.len()])?;
@@ -356,9 +414,8 @@ pub fn bias_posterior(
     scratch: &mut [u8],
 ) -> Result<Constraints> {
     let mut arena = Arena::new(scratch, bias_posterior_scratch(points)?)?;
-    let fit = fit_bias(likelihood, start, free)?;
+    let (fit, range) = locate(likelihood, start, free)?;
     let free = Free::new(free)?;
-    let (range, least) = range(likelihood, &fit, &free)?;
     let count = free.numbers().len();
     let grid = Grid { range, points: [points, if count == 2 { points } else { 1 }] };
     let (first, second) = (arena.take::<f64>(points)?, arena.take::<f64>(points)?);
@@ -367,7 +424,8 @@ pub fn bias_posterior(
     for (i, first) in first.iter_mut().enumerate() {
         for (j, second) in second[..grid.points[1]].iter_mut().enumerate() {
             let at = free.with(&fit.value, [grid.value(0, i), grid.value(1, j)]);
-            let density = libm::exp(0.5 * (least - likelihood.at(&at)).min(0.0));
+            // Above 1 only by rounding, or in a valley narrower than the search; and never infinite.
+            let density = libm::exp((0.5 * (fit.chi_squared - likelihood.at(&at))).min(300.0));
             *first += end_weight(j, grid.points[1]) * density;
             *second += end_weight(i, points) * density;
         }

@@ -17,6 +17,7 @@ mod ratios;
 mod resample;
 mod suppression;
 mod universe;
+mod valleys;
 
 use rand_core::Rng;
 

@@ -272,6 +272,7 @@ fn what_is_no_grid_and_no_density_is_refused() {
     assert_eq!(refused(&[1.0; 6], [3, 2], 0, [0.0, 1.0]), Error::Length);
     assert_eq!(refused(&[1.0; 6], [2, 3], 2, [0.0, 1.0]), Error::Range);
     assert_eq!(refused(&[1.0; 6], [2, 3], 0, [1.0, 1.0]), Error::Range);
+    assert_eq!(refused(&[], [2, 0], 0, [0.0, 1.0]), Error::Range);
     assert_eq!(refused(&[1.0, f64::NAN], [2, 1], 0, [0.0, 1.0]), Error::NotFinite);
     assert_eq!(out, [7.0; 2]);
 
