@@ -54,9 +54,13 @@ fn the_c_of_the_readme_compiles() {
          void *me, int32_t (*save_and_show)(void *, const fixpair_progress *), uint64_t *labels, fixpair_halo *halos, size_t count",
         "struct particle *p, size_t count, double L, fixpair_fft_f32 fft, float *mesh, void *scratch, size_t bytes, \
          int64_t *sums, size_t words, fixpair_bin *bins, double *P",
+        "double *P, const double *original, const double *inverted, double *sigma, fixpair_suppression left, const double *k, const double *model, \
+         const double *modes, size_t bins, double n, const double *linear, const double *alpha, void *scratch, size_t bytes, double *f100, \
+         const double *f0, size_t seed, size_t seeds, double worth, double sigma_normal",
     ];
     assert_eq!(blocks.len(), hosts.len(), "every block of C has its host");
-    let mut source = String::from("#include <stdio.h>\n#include <stdlib.h>\n#include <fixpair.h>\n");
+    let mut source =
+        String::from("#include <math.h>\n#include <stdio.h>\n#include <stdlib.h>\n#include <fixpair.h>\n");
     source.push_str("struct particle { float pos[3], vel[3]; uint32_t id; };\n");
     for (i, (code, host)) in blocks.iter().zip(hosts).enumerate() {
         source.push_str(&format!("void host{i}({host});\nvoid host{i}({host})\n{{\n{code}}}\n"));

@@ -11,6 +11,7 @@ use core::ops::Range;
 
 use super::check::{fill, finite, same_length};
 use crate::math::sqrt;
+use crate::simd::Simd;
 use crate::status::{Error, Result};
 
 /// What a state keeps.
@@ -119,33 +120,31 @@ fn row(i: usize, values: usize) -> usize {
     i * values - i * i.saturating_sub(1) / 2
 }
 
-/// Adds `weight` times the outer product of `shift` with itself.
-fn add_squares(
-    squares: &mut [f64],
-    moments: Moments,
-    values: usize,
-    weight: f64,
-    shift: impl Fn(usize) -> f64,
-) {
+/// Adds `weight` times the outer product of x - mean with itself.
+#[inline(always)]
+fn add_squares(squares: &mut [f64], moments: Moments, weight: f64, x: &[f64], mean: &[f64]) {
     match moments {
         Moments::Variance => {
-            for (i, square) in squares.iter_mut().enumerate() {
-                *square += weight * shift(i) * shift(i);
+            for ((square, x), mean) in squares.iter_mut().zip(x).zip(mean) {
+                *square += weight * (x - mean) * (x - mean);
             }
         }
         Moments::Covariance => {
             let mut rest = squares;
-            for i in 0..values {
-                let (this, next) = rest.split_at_mut(values - i);
-                let factor = weight * shift(i);
-                for (j, square) in this.iter_mut().enumerate() {
-                    *square += factor * shift(i + j);
+            for i in 0..x.len() {
+                let (row, next) = rest.split_at_mut(x.len() - i);
+                let factor = weight * (x[i] - mean[i]);
+                for ((square, x), mean) in row.iter_mut().zip(&x[i..]).zip(&mean[i..]) {
+                    *square += factor * (x - mean);
                 }
                 rest = next;
             }
         }
     }
 }
+
+/// To ask for the processor's instructions takes as long as so many multiplications.
+const WORTH: usize = 1 << 16;
 
 /// More samples, one after another. Cost: one multiplication and addition for each sample and number of the state.
 ///
@@ -163,14 +162,21 @@ pub fn ensemble_add(state: &mut [f64], samples: &[f64]) -> Result<()> {
     }
     let (head, rest) = state.split_at_mut(HEAD);
     let (mean, squares) = rest.split_at_mut(values);
-    for sample in samples.chunks_exact(values) {
-        let (before, total) = (head[0], head[0] + 1.0);
-        add_squares(squares, moments, values, before / total, |i| sample[i] - mean[i]);
-        for (mean, x) in mean.iter_mut().zip(sample) {
-            *mean += (x - *mean) / total;
-        }
-        head[0] = total;
-    }
+    let work = samples.len() / values * squares.len();
+    let simd = if work < WORTH { Simd::Portable } else { Simd::detect() };
+    simd.vectorise(
+        #[inline(always)]
+        || {
+            for sample in samples.chunks_exact(values) {
+                let (before, total) = (head[0], head[0] + 1.0);
+                add_squares(squares, moments, before / total, sample, mean);
+                for (mean, x) in mean.iter_mut().zip(sample) {
+                    *mean += (x - *mean) / total;
+                }
+                head[0] = total;
+            }
+        },
+    );
     Ok(())
 }
 
@@ -192,7 +198,7 @@ pub fn ensemble_merge(state: &mut [f64], other: &[f64]) -> Result<()> {
     for (square, more) in squares.iter_mut().zip(from.squares) {
         *square += more;
     }
-    add_squares(squares, moments, values, count * from.count / total, |i| from.mean[i] - mean[i]);
+    add_squares(squares, moments, count * from.count / total, from.mean, mean);
     for (mean, other) in mean.iter_mut().zip(from.mean) {
         *mean += (other - *mean) * (from.count / total);
     }
