@@ -23,6 +23,7 @@
 #include "fixpair.h"
 #include "gadget.h"
 #include "memory.h"
+#include "options.h"
 #include "spectra.h"
 
 #define PI 3.141592653589793
@@ -71,12 +72,6 @@ static void help(FILE *stream) {
 
 /* ---- Options. */
 
-static int number(double *value, const char *text, double least, double most) {
-    char *end;
-    *value = strtod(text, &end);
-    return end == text || *end != '\0' || !(*value >= least && *value <= most);
-}
-
 static int choose(int32_t *choice, const char *text, const char *const *names, int32_t count) {
     for (*choice = 0; *choice < count; ++*choice) {
         if (strcmp(text, names[*choice]) == 0) return 0;
@@ -91,7 +86,7 @@ static int set(struct options *options, const char *name, const char *text) {
     int32_t choice;
     int wrong = 0;
     if (strcmp(name, "--mesh") == 0) {
-        wrong = number(&value, text, 8.0, 65536.0);
+        wrong = option_number(&value, text, 8.0, 65536.0);
         options->mesh = (size_t)value;
         wrong = wrong || (double)options->mesh != value || fixpair_fft_next_side(options->mesh) != options->mesh;
         if (wrong) {
@@ -102,14 +97,14 @@ static int set(struct options *options, const char *name, const char *text) {
         wrong = choose(&choice, text, windows, 4);
         options->window = choice + FIXPAIR_WINDOW_NGP;
     } else if (strcmp(name, "--highest") == 0) {
-        wrong = number(&options->highest, text, 1e-9, 1e9);
+        wrong = option_number(&options->highest, text, 1e-9, 1e9);
     } else if (strcmp(name, "--width") == 0) {
-        wrong = number(&options->width, text, 1.0, 1e4);
+        wrong = option_number(&options->width, text, 1.0, 1e4);
     } else if (strcmp(name, "--unit") == 0) {
         wrong = choose(&choice, text, units, 2);
         options->unit = choice == 0 ? GADGET_KPC : GADGET_MPC;
     } else if (strcmp(name, "--threads") == 0) {
-        wrong = number(&value, text, 1.0, 4096.0);
+        wrong = option_number(&value, text, 1.0, 4096.0);
         options->threads = (size_t)value;
     } else if (strcmp(name, "--counts") == 0) {
         options->counts = text;

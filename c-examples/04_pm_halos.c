@@ -25,6 +25,7 @@
 #include "groups.h"
 #include "matter.h"
 #include "memory.h"
+#include "options.h"
 #include "picture.h"
 #include "simulation.h"
 
@@ -256,19 +257,6 @@ static int run(struct laboratory *lab) {
 
 /* ---- Options. */
 
-static int number(double *value, const char *text, double least, double most) {
-    char *end;
-    *value = strtod(text, &end);
-    return end == text || *end != '\0' || !(*value >= least && *value <= most);
-}
-
-static int whole(uint64_t *value, const char *text, double least, double most) {
-    double real = 0.0;
-    int wrong = number(&real, text, least, most) || real != floor(real);
-    *value = wrong ? 0 : (uint64_t)real;
-    return wrong;
-}
-
 static int list(struct options *options, const char *text) {
     char *end = "";
     for (options->outputs_len = 0; options->outputs_len < MOST_OUTPUTS; text = end + 1) {
@@ -288,13 +276,13 @@ static int set(struct options *options, const char *name, const char *text) {
     char *end = "";
     int wrong = 0;
     if (strcmp(name, "--particles") == 0) {
-        wrong = whole(&choice->n, text, 8.0, 1024.0);
+        wrong = option_whole(&choice->n, text, 8.0, 1024.0);
     } else if (strcmp(name, "--mesh-factor") == 0) {
-        wrong = whole(&choice->mesh_factor, text, 1.0, 3.0);
+        wrong = option_whole(&choice->mesh_factor, text, 1.0, 3.0);
     } else if (strcmp(name, "--box") == 0) {
-        wrong = number(&choice->box_size, text, 1.0, 1e5);
+        wrong = option_number(&choice->box_size, text, 1.0, 1e5);
     } else if (strcmp(name, "--steps") == 0) {
-        wrong = whole(&choice->steps, text, 1.0, 1e5);
+        wrong = option_whole(&choice->steps, text, 1.0, 1e5);
     } else if (strcmp(name, "--seed") == 0) {
         choice->seed = strtoull(text, &end, 10);
         wrong = end == text || *end != '\0';
@@ -302,16 +290,16 @@ static int set(struct options *options, const char *name, const char *text) {
         for (choice->stepper = 0; choice->stepper < 3 && strcmp(text, steppers[choice->stepper]) != 0;) choice->stepper++;
         wrong = choice->stepper == 3;
     } else if (strcmp(name, "--start") == 0) {
-        wrong = number(&choice->start, text, 0.0, 1000.0);
+        wrong = option_number(&choice->start, text, 0.0, 1000.0);
     } else if (strcmp(name, "--redshift") == 0) {
-        wrong = number(&choice->end, text, 0.0, 1000.0);
+        wrong = option_number(&choice->end, text, 0.0, 1000.0);
     } else if (strcmp(name, "--outputs") == 0) {
         wrong = list(options, text);
     } else if (strcmp(name, "--stop") == 0) {
-        wrong = whole(&value, text, 1.0, 1e5);
+        wrong = option_whole(&value, text, 1.0, 1e5);
         options->stop = (size_t)value;
     } else if (strcmp(name, "--threads") == 0) {
-        wrong = whole(&value, text, 1.0, 4096.0);
+        wrong = option_whole(&value, text, 1.0, 4096.0);
         options->threads = (size_t)value;
     } else if (strcmp(name, "--resume") == 0) {
         options->resume = text;

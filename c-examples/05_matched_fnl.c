@@ -10,7 +10,6 @@
  */
 
 #include <errno.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,6 +22,7 @@
 #include "matched_report.h"
 #include "mock_claims.h"
 #include "mock_spectra.h"
+#include "options.h"
 
 /* From the folder of the library, or from this one. */
 static const char *const usual_tables[] = {"examples/data/camb_goliat_linear.txt", "../examples/data/camb_goliat_linear.txt"};
@@ -65,42 +65,32 @@ static void help(FILE *stream) {
 
 /* ---- Options. */
 
-static int number(double *value, const char *text, double least, double most) {
-    char *end;
-    *value = strtod(text, &end);
-    return end == text || *end != '\0' || !(*value >= least && *value <= most);
-}
-
-static int count(double *value, const char *text, double least, double most) {
-    return number(value, text, least, most) || floor(*value) != *value;
-}
-
 /* An option with a value. Returns 0 if both are known and sound. */
 static int set(struct options *options, const char *name, const char *text) {
     struct constraints_choice *analysis = &options->analysis;
-    double value = 0.0;
+    uint64_t value = 0;
     int wrong = 0;
     if (strcmp(name, "--box") == 0) {
-        wrong = number(&options->box_size, text, 1.0, 1e6);
+        wrong = option_number(&options->box_size, text, 1.0, 1e6);
     } else if (strcmp(name, "--redshift") == 0) {
-        wrong = number(&analysis->redshift, text, 0.0, 1000.0);
+        wrong = option_number(&analysis->redshift, text, 0.0, 1000.0);
     } else if (strcmp(name, "--omega-m") == 0) {
-        wrong = number(&analysis->cosmology.omega_m, text, 0.01, 1.0);
+        wrong = option_number(&analysis->cosmology.omega_m, text, 0.01, 1.0);
         analysis->cosmology.omega_de = 1.0 - analysis->cosmology.omega_m;
     } else if (strcmp(name, "--n-s") == 0) {
-        wrong = number(&analysis->cosmology.n_s, text, 0.5, 1.5);
+        wrong = option_number(&analysis->cosmology.n_s, text, 0.5, 1.5);
     } else if (strcmp(name, "--k-scatter") == 0) {
-        wrong = number(&analysis->highest_scatter, text, 1e-4, 100.0);
+        wrong = option_number(&analysis->highest_scatter, text, 1e-4, 100.0);
     } else if (strcmp(name, "--k-bias") == 0) {
-        wrong = number(&analysis->highest_bias, text, 1e-4, 100.0);
+        wrong = option_number(&analysis->highest_bias, text, 1e-4, 100.0);
     } else if (strcmp(name, "--seeds") == 0) {
-        wrong = count(&value, text, 8.0, 1e5);
+        wrong = option_whole(&value, text, 8.0, 1e5);
         options->universe.seeds = (size_t)value;
     } else if (strcmp(name, "--random") == 0) {
-        wrong = count(&value, text, 0.0, 9007199254740992.0);
-        options->universe.random = (uint64_t)value;
+        wrong = option_whole(&value, text, 0.0, 9007199254740992.0);
+        options->universe.random = value;
     } else if (strcmp(name, "--p") == 0) {
-        wrong = number(&options->universe.bias.p, text, -2.0, 2.0);
+        wrong = option_number(&options->universe.bias.p, text, -2.0, 2.0);
     } else if (strcmp(name, "--linear") == 0) {
         options->linear = text;
     } else if (strcmp(name, "--table") == 0) {

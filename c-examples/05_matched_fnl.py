@@ -2,9 +2,8 @@
 
     python3 05_matched_fnl.py [options] TABLE...      --help
 
-Standard library only. Arrays are those of ctypes; `(Double * a.size).from_buffer(a)` is one that shares the memory of a numpy array of
-doubles in C order, and where a function of the library alone is called, `a.ctypes.data` will do. The numbers are those of the C program, to
-the last digit.
+Standard library only. Arrays are those of ctypes; `(Double * a.size).from_buffer(a)` shares the memory of a numpy array of doubles in C
+order, and `a.ctypes.data` will do for a function of the library itself. The numbers are those of the C program, to the last digit.
 """
 
 import argparse
@@ -17,7 +16,6 @@ from ctypes import byref
 from types import SimpleNamespace
 
 # ---- The part of fixpair.h that is used here.
-
 
 def structure(name, **fields):
     return type(name, (ctypes.Structure,), {"_fields_": list(fields.items())})
@@ -39,17 +37,15 @@ Difference = structure("Difference", mean_first=Double, mean_second=Double, devi
                        correlation=Double, correlation_error=Double, mean=Double, deviation=Double, error_of_mean=Double)
 ControlVariate = structure("ControlVariate", mean=Double, error=Double, beta=Double, correlation=Double, deviation=Double, gain=Double)
 
-MOMENTS_VARIANCE, HALO_HALO, FREE_B_G, FREE_F_NL, BETA_OPTIMAL = 0, 0, 1, 4, 1
-POWER, TRANSFER, AS_GIVEN, SIGMA8 = 0, 1, 0, 1
+MOMENTS_VARIANCE, HALO_HALO, FREE_B_G, FREE_F_NL, BETA_OPTIMAL, POWER, TRANSFER, AS_GIVEN, SIGMA8 = 0, 0, 1, 4, 1, 0, 1, 0, 1
 
 # Arguments: p pointer, n size_t, u uint64_t, i int32_t and uint32_t, d double.
 SIGNATURES = {
     "cosmology_init": "p", "linear_power": "ppnppd", "alpha": "ppnppdi",
     "ensemble_length": "pni", "ensemble_init": "pnni", "ensemble_add": "pnpn", "ensemble_mean": "pnpn", "ensemble_deviation": "pnpn",
     "pair_average": "pppn", "sigma_per_simulation": "pppnuu", "sigma_gaussian": "pppnd", "sigma_suppressed": "pppppnd",
-    "fit_suppression": "ppppppndu",
-    "bias_init": "p", "likelihood_init": "p", "likelihood_add": "pppppni", "bias_posterior_scratch": "pn", "bias_posterior": "ppnppindpn",
-    "bootstrap_indices": "pnuuu", "matched_difference": "pppn", "difference_sigma": "pddd", "effective_volume": "pdudu",
+    "fit_suppression": "ppppppndu", "bias_init": "p", "likelihood_init": "p", "likelihood_add": "pppppni", "bias_posterior_scratch": "pn",
+    "bias_posterior": "ppnppindpn", "bootstrap_indices": "pnuuu", "matched_difference": "pppn", "difference_sigma": "pddd", "effective_volume": "pdudu",
     "universality": "ppdddddd", "control_variates_scratch": "pn", "control_variates": "pnppnppidpn", "control_variate_gain": "pdddd",
 }
 

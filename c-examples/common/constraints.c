@@ -148,7 +148,8 @@ static int fit_half(struct constraints *constraints, struct constraints_half *ha
         if (constraints_fit(half->f_nl + s, half->b_g + s, &posterior, power, half->used, matched->linear, constraints->alpha, bins) == 0) {
             continue;
         }
-        fprintf(stderr, "seed %llu cannot be fitted\n", (unsigned long long)matched->seed[s]);
+        fprintf(stderr, "seed %llu cannot be fitted: take a larger --k-bias, or leave its rows out\n",
+                (unsigned long long)matched->seed[s]);
         return 1;
     }
     return constraints_fit(&peak, &bias, &half->on_mean, half->mean, half->used, matched->linear, constraints->alpha, bins);
