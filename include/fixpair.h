@@ -957,7 +957,7 @@ typedef struct fixpair_difference {
 
 /* The expectation of y. */
 typedef struct fixpair_control_variate {
-  /* <y> - beta (<c> - mu). */
+  /* mean(y) - beta (mean(c) - mu). */
   double mean;
   /* Its standard error, with the costs of estimating beta and of the error of mu. */
   double error;
@@ -967,7 +967,7 @@ typedef struct fixpair_control_variate {
   double correlation;
   /* Scatter of one estimate y - beta (c - mu). */
   double deviation;
-  /* (error of <y>/error)^2: how many times fewer simulations the same error takes. */
+  /* (error of mean(y)/error)^2: how many times fewer simulations the same error takes. */
   double gain;
 } fixpair_control_variate;
 
@@ -3724,7 +3724,7 @@ fixpair_status_t fixpair_bispectrum_reduced(double *out,
  * Doubles in the state of an ensemble: 3 + 2 values with FIXPAIR_MOMENTS_VARIANCE, 3 + values + values (values + 1)/2 with _COVARIANCE.
  *
  * The state holds the number of samples so far, their mean, and sums of products about the mean (Welford 1962; Chan, Golub & LeVeque 1979):
- * no digits are lost where the mean is large. It may be copied, saved, and sent as doubles, and merges with that of another process:
+ * where the mean is large no more digits are lost than the samples themselves have lost. It may be copied, saved, and sent as doubles, and merges with that of another process:
  *
  * fixpair_ensemble_length(&length, bins, FIXPAIR_MOMENTS_COVARIANCE);
  * fixpair_ensemble_init(state, length, bins, FIXPAIR_MOMENTS_COVARIANCE);
@@ -4302,7 +4302,8 @@ fixpair_status_t fixpair_bias_posterior_scratch(struct fixpair_layout *scratch, 
 /*
  * The fit, and the posterior of each free parameter, in one call: range, grid and integrals of fixpair_bias_range, _bias_grid, _marginal and _read_posterior.
  *
- * Priors are flat in the free parameters, with b_g > 0.
+ * Priors are flat in the free parameters, with b_g > 0. Weak data of P_hh may be fitted by b(k) of either sign at small k: the posterior then has two humps, both in its
+ * range, and peak and central region need not agree.
  *
  * Out: fit             as fixpair_fit_bias
  *      posteriors      parameters structs, one for each free parameter, in the order b_g, p, f_NL
@@ -4312,7 +4313,7 @@ fixpair_status_t fixpair_bias_posterior_scratch(struct fixpair_layout *scratch, 
  *      scratch         scratch_len bytes
  * Returns: as fixpair_fit_bias; _OVERFLOW, FIXPAIR_ERROR_LENGTH for another number of parameters, FIXPAIR_ERROR_RANGE for points or a probability outside (0, 1), FIXPAIR_ERROR_SCRATCH, FIXPAIR_ERROR_CONVERGENCE if the
  *          posterior does not end anywhere, as that of f_NL where b_g = p cannot be excluded
- * Cost: 30 ns a point of the grid, 0.5 ms for 128 x 128
+ * Cost: 30 ns a point of the grid, 0.6 ms for 128 x 128
  */
 fixpair_status_t fixpair_bias_posterior(struct fixpair_bias_fit *fit,
                                         struct fixpair_posterior *posteriors,

@@ -22,7 +22,7 @@ fn moments(choice: i32) -> Result<Moments> {
 /// Doubles in the state of an ensemble: 3 + 2 values with FIXPAIR_MOMENTS_VARIANCE, 3 + values + values (values + 1)/2 with _COVARIANCE.
 ///
 /// The state holds the number of samples so far, their mean, and sums of products about the mean (Welford 1962; Chan, Golub & LeVeque 1979):
-/// no digits are lost where the mean is large. It may be copied, saved, and sent as doubles, and merges with that of another process:
+/// where the mean is large no more digits are lost than the samples themselves have lost. It may be copied, saved, and sent as doubles, and merges with that of another process:
 ///
 /// ```c
 /// fixpair_ensemble_length(&length, bins, FIXPAIR_MOMENTS_COVARIANCE);

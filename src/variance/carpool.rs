@@ -54,7 +54,7 @@ fn bytes(values: usize, controls: usize) -> usize {
 
 /// The expectation of y, its covariance, and B: values numbers, values x values, values x controls, row by row.
 ///
-/// The covariance is C_rest (1/N + d^T S^-1 d) + B C_mu B^T with d = <c> - mu, S = (N - 1) (C_cc + N C_mu), and C_rest the covariance of what B leaves, of N - 1 - controls
+/// The covariance is C_rest (1/N + d^T S^-1 d) + B C_mu B^T with d the mean of c less mu, S = (N - 1) (C_cc + N C_mu), and C_rest the covariance of what B leaves, of N - 1 - controls
 /// degrees of freedom: estimating B is paid for, on average with the (N - 2)/(N - controls - 2) of
 /// [`control_variate_loss`](super::control::control_variate_loss). Where its inverse is used, Hartlap's factor is due with N - controls for N.
 ///

@@ -5,7 +5,7 @@ use crate::status::{Error, Result};
 
 /// The line of one level, as straight segments (x0, y0, x1, y1) in the grid's values, each with higher values to the same side.
 ///
-/// `values`: points[0] rows of points[1]; x is the first parameter, y the second, of uniform steps over their ranges. A segment crosses one cell;
+/// `values`: as many rows as the first parameter has points, of as many values as the second; x is the first parameter, y the second, of uniform steps over their ranges. A segment crosses one cell;
 /// its ends are interpolated on the cell's edges, to second order in the step, so that neighbours meet. Where a cell has two ways, the mean of its corners decides.
 /// Returns how many segments there are; `segments` may be empty to count them, and is untouched if it is too short for all.
 ///

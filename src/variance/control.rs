@@ -22,7 +22,7 @@ pub enum Beta {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct ControlVariate {
-    /// <y> - beta (<c> - mu).
+    /// mean(y) - beta (mean(c) - mu).
     pub mean: f64,
     /// Its standard error, with the costs of estimating beta and of the error of mu.
     pub error: f64,
@@ -32,7 +32,7 @@ pub struct ControlVariate {
     pub correlation: f64,
     /// Scatter of one estimate y - beta (c - mu).
     pub deviation: f64,
-    /// (error of <y>/error)^2: how many times fewer simulations the same error takes.
+    /// (error of mean(y)/error)^2: how many times fewer simulations the same error takes.
     pub gain: f64,
 }
 
@@ -41,7 +41,7 @@ pub struct ControlVariate {
 /// `mu`, `error`: expectation of c, and its standard error; 0 if it is exact. N_c cheap simulations of their own give s_c/sqrt(N_c).
 ///
 /// The error is that of a regression: with beta from the samples the scatter about the line has N - 2 degrees of freedom, and the error includes that of the slope,
-/// s sqrt(1/N + (<c> - mu)^2/S) with S = (N - 1) (var(c) + N error^2): on average (N - 2)/(N - 3) times s^2/N. With a given beta it is s/sqrt(N). beta^2 error^2 is added to the square of both.
+/// s sqrt(1/N + (mean(c) - mu)^2/S) with S = (N - 1) (var(c) + N error^2): on average (N - 2)/(N - 3) times s^2/N. With a given beta it is s/sqrt(N). beta^2 error^2 is added to the square of both.
 ///
 /// # Errors
 /// `Length` for lists of different lengths, `Samples` for fewer than two, or four for [`Beta::Optimal`], `NotFinite`, `Range` for a negative error or a sum that overflows, `Singular` where

@@ -86,7 +86,7 @@ pub(super) mod dense {
 
     use crate::status::{Error, Result};
 
-    /// Work space of [`factor`], with room to align it.
+    /// Work space of [`factor()`], with room to align it.
     pub(crate) fn factor_bytes(side: usize) -> usize {
         factor::cholesky_in_place_scratch::<f64>(side, Par::Seq, Default::default())
             .unaligned_bytes_required()
@@ -104,12 +104,12 @@ pub(super) mod dense {
         if sound { Ok(()) } else { Err(Error::Singular) }
     }
 
-    /// Work space of [`solve`], with room to align it.
+    /// Work space of [`solve()`], with room to align it.
     pub(crate) fn solve_bytes(side: usize, columns: usize) -> usize {
         solve::solve_in_place_scratch::<f64>(side, columns, Par::Seq).unaligned_bytes_required()
     }
 
-    /// `right` becomes C^-1 `right`, `columns` columns of `side` values, with L of [`factor`].
+    /// `right` becomes C^-1 `right`, `columns` columns of `side` values, with L of [`factor()`].
     pub(crate) fn solve(right: &mut [f64], factor: &[f64], side: usize, columns: usize, work: &mut [u8]) {
         let factor = MatRef::from_column_major_slice(factor, side, side);
         let right = MatMut::from_column_major_slice_mut(right, side, columns);

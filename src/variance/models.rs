@@ -39,7 +39,7 @@ pub fn continuum_modes(out: &mut [f64], k: &[f64], width: f64, box_size: f64) ->
 /// Largest |n| of [`lattice_modes`].
 const REACH: u64 = 1 << 14;
 
-/// The exact number of modes n, integers in three dimensions, with edges[b] <= |n|^2 < edges[b + 1]: n and -n are two.
+/// The exact number of modes n, integers in three dimensions, with |n|^2 from one edge to just below the next: n and -n are two.
 ///
 /// Modes beyond the Nyquist frequency of some mesh are counted too, and n = 0 by an edge of 0. Cost: n^2/8 square roots for each edge, n the largest |n|.
 ///

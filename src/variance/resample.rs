@@ -91,8 +91,8 @@ pub fn jackknife_means(out: &mut [f64], samples: &[f64], values: usize) -> Resul
     Ok(())
 }
 
-/// What the jackknife makes of statistics without one row each: N whole - (N - 1) <deleted>, whose bias of order 1/N is gone, and the error
-/// sqrt((N - 1)/N sum (deleted - <deleted>)^2) (Quenouille 1956, Tukey 1958).
+/// What the jackknife makes of statistics without one row each: N whole - (N - 1) mean(deleted), whose bias of order 1/N is gone, and the error
+/// sqrt((N - 1)/N sum (deleted - mean(deleted))^2) (Quenouille 1956, Tukey 1958).
 ///
 /// `whole`: the statistic of all rows; `deleted`: one row of values for each row that was left out.
 ///
