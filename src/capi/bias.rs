@@ -41,7 +41,9 @@ pub unsafe extern "C" fn fixpair_bias_init(bias: *mut Bias) -> fixpair_status_t 
 
 /// Bias with local primordial non-Gaussianity (Avila & Adame 2022, Eq. bk; Dalal et al. 2008, Slosar et al. 2008):
 ///
+/// ```text
 ///     b(k) = b_g + b_phi f_NL/alpha(k, z),  b_phi = 2 delta_c (b_g - p)
+/// ```
 ///
 /// Out: out    len doubles
 /// In:  bias   b_g, p, f_NL, delta_c
@@ -136,7 +138,9 @@ pub unsafe extern "C" fn fixpair_measured_bias(
 ///
 /// It holds all that measured spectra say of b_g, p and f_NL, exp(-chi^2/2) with (Eq. chi2, likelihood)
 ///
+/// ```text
 ///     chi^2 = (d - m)^T C^-1 (d - m),  m = b(k)^2 P_lin or b(k) P_lin
+/// ```
 ///
 /// in 36 numbers, since m is a sum of P_lin, P_lin/alpha and P_lin/alpha^2: after spectra were added, chi^2 of any parameters takes 30 multiplications, whatever the number
 /// of bins. Fill it with spectra of P_hh, of P_hm, or of both, at one redshift; only bins that are passed are fitted (the paper takes k <= 0.09 h/Mpc):

@@ -86,7 +86,9 @@ pub unsafe extern "C" fn fixpair_carpool_scratch(
 
 /// CARPool with a matrix of coefficients (Chartier et al. 2021, arXiv:2009.08970): each value of y is corrected by all controls. Not in a library without the feature "linalg".
 ///
+/// ```text
 ///     <y> - B (<c> - mu),  B = C_yc (C_cc + N C_mu)^-1
+/// ```
 ///
 /// Each control costs a degree of freedom: where N is not much larger than their number, fixpair_control_variates does better.
 ///

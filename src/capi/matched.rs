@@ -148,7 +148,9 @@ pub unsafe extern "C" fn fixpair_control_variates_scratch(
 /// The expectation of y from few costly simulations, by controls c of the same seeds whose expectation mu is known: <y> - beta (<c> - mu), a control for each value (CARPool,
 /// Chartier et al. 2021, arXiv:2009.08970). With y = f100, c = f0, mu = 0 and beta = 1 the mean is Delta f of Eq. diff; the optimal beta gains more:
 ///
+/// ```text
 ///     beta = cov(y, c)/(var(c) + N error^2)
+/// ```
 ///
 /// The error is that of a regression: it pays for estimating beta, on average with fixpair_control_variate_loss, and for the error of mu. The optimal
 /// beta trusts mu: where the model that gives it is wrong, <c> - mu is many errors from 0, the result is shifted by beta times that, and its error grows.

@@ -87,7 +87,9 @@ pub unsafe extern "C" fn fixpair_sigma_gaussian(
 
 /// Scatter of P of fixed simulations, per simulation (Eq. sigma_fix with the plus that its text and its fits need):
 ///
+/// ```text
 ///     sigma_r = sqrt(2/N_k) (P [R_cv + (1 - R_cv) (2/pi) atan(k/k_soft)] + f_sn noise)
+/// ```
 ///
 /// Out: sigma        len doubles, (Mpc/h)^3
 /// In:  suppression  R_cv, k_soft, f_sn
