@@ -4610,9 +4610,10 @@ fixpair_status_t fixpair_covariance_root_scratch(struct fixpair_layout *scratch,
 
 #if !defined(FIXPAIR_NO_LINALG)
 /*
- * The Cholesky factor L of a covariance C = L L^T, by faer. Not in a library without the feature "linalg".
+ * The Cholesky factor L of a covariance C = L L^T, by faer. Not in a library without the feature "linalg": there define FIXPAIR_NO_LINALG before
+ * this header, which hides this section.
  *
- * The one function of this section that may allocate, inside faer, for hundreds of values; fixpair_carpool is the other. Bits depend on the instructions of the processor.
+ * Inside faer this function and fixpair_carpool may allocate, for hundreds of values; no other of the statistics does. Bits depend on the instructions of the processor.
  *
  * Out: root        values x values doubles: the lower triangle, row by row, zeros above
  * In:  covariance  values x values doubles, symmetric
