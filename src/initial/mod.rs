@@ -10,6 +10,8 @@ pub mod modes;
 pub mod particles;
 pub mod png;
 pub mod realise;
+pub mod shifted;
+pub mod third;
 
 #[cfg(test)]
 mod tests;
