@@ -207,6 +207,20 @@ impl Factor for Scale {
     }
 }
 
+/// f_k <- table(|n|^2) f_k, for modes inside the table.
+pub(crate) struct ByTable<'a>(pub(crate) &'a [f64]);
+
+impl Factor for ByTable<'_> {
+    const IMAGINARY: bool = false;
+
+    #[inline(always)]
+    fn at(&self, n: [f64; 3]) -> f64 {
+        // Blocks of factors reach beyond the last mode of a row, and so beyond the table.
+        let square = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) as usize;
+        self.0.get(square).copied().unwrap_or(0.0)
+    }
+}
+
 /// Copies modes from one mesh to another of any side; modes that only the larger has are dropped or become zero, and so do the
 /// Nyquist modes of the smaller.
 ///
