@@ -68,8 +68,10 @@ static void X(universe_at)(const char *name, const fixpair_conditions *condition
     give_back(scratch);
 }
 
-/* Particles that begin on the lattice of the mesh are those of the lattice, to rounding: in single precision a place is known to 1e-6 of a
- * cell, across which velocities change by some 100 km/s. */
+/*
+ * Particles that begin on the lattice of the mesh are those of the lattice, to rounding: in single precision a place is known to 1e-6 of
+ * a cell, across which velocities change by some 100 km/s.
+ */
 static void X(lattice_of_its_own)(const fixpair_conditions *conditions, const X(fixpair_fft) *fft, const fixpair_exec *exec) {
     enum { PARTICLES = N * N * N };
     const double tolerance = sizeof(REAL) == 4 ? 1e-2 : 1e-10;

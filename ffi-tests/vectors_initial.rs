@@ -37,7 +37,10 @@ const fn row(coefficient: f64, [s_out, s_a, s_b]: [f64; 3]) -> ShapeRow {
 fn columns() -> [Vec<f64>; 5] {
     let [k, _, matter] = rows();
     let column = |top: f64, slope: f64| {
-        (1..=40).map(|row| f64::from(row) * f64::from(row)).map(|square| top / (1.0 + slope * square)).collect()
+        (1..=40)
+            .map(|row| f64::from(row) * f64::from(row))
+            .map(|square| top / (1.0 + slope * square))
+            .collect()
     };
     [k, matter, column(1.25, 0.0625), column(0.875, 0.04), column(1.0, 0.045)]
 }
@@ -74,18 +77,14 @@ struct Universe {
 }
 
 fn universes() -> [(&'static str, Universe); 11] {
-    let second = Universe {
-        order: Order::Second,
-        fine: None,
-        shape: Shape::Local.rows(),
-        g_nl: 0.0,
-        species: None,
-    };
+    let second =
+        Universe { order: Order::Second, fine: None, shape: Shape::Local.rows(), g_nl: 0.0, species: None };
     let third = Universe { order: Order::Third, ..second };
     let equilateral = Universe { shape: Shape::Equilateral.rows(), ..second };
     let own = Universe { shape: &KERNEL, ..second };
     let cubic = Universe { fine: Some(FINER), g_nl: 1e5, ..own };
-    let [alone, with_reference] = [false, true].map(|reference| Universe { species: Some(reference), ..second });
+    let [alone, with_reference] =
+        [false, true].map(|reference| Universe { species: Some(reference), ..second });
     [
         ("third", third),
         ("third_exact", Universe { fine: Some(FINE), ..third }),
@@ -158,7 +157,8 @@ fn particles_at<T: Real>(
         let (x, v) = (&mut position, &mut velocity);
         let scratch = scratch.bytes(layout.size);
         let fine = fine.map(|fine| fine as &mut dyn Fft3<T>);
-        initial_conditions_at(x, v, &pre_initial, conditions, fft, fine, scratch, &Serial).expect("particles");
+        initial_conditions_at(x, v, &pre_initial, conditions, fft, fine, scratch, &Serial)
+            .expect("particles");
     }
     let hash = Hash::new().integers(&[layout.size as u64, layout.align as u64]);
     triples(triples(hash, &position), &velocity)
