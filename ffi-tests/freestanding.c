@@ -1,6 +1,7 @@
 /*
  * Initial conditions where there is nothing, their power spectrum and bispectrum, the halos that they grow into, and f_NL from spectra of
- * halos: no C library, no heap, no threads, no main. Linux on x86-64; exits with 0 if the particles and their numbers are there, else with a number that says where it stopped.
+ * halos: no C library, no heap, no threads, no main. Linux on x86-64; exits with 0 if the particles and their numbers are there, else with
+ * a number that says where it stopped.
  */
 #define FIXPAIR_NO_THREADS
 #define FIXPAIR_NO_LINALG

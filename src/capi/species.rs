@@ -25,7 +25,7 @@ pub const FIXPAIR_RATIO_VELOCITY: i32 = 2;
 pub struct fixpair_species {
     /// sizeof(fixpair_species).
     pub struct_size: usize,
-    /// Rows of each column.
+    /// Rows of each column, 2 or more.
     pub rows: usize,
     /// h/Mpc, increasing.
     pub k: *const f64,
@@ -33,7 +33,8 @@ pub struct fixpair_species {
     pub matter: *const f64,
     /// T_s of the species: T_m itself, or that of matter without neutrinos, if there is but one.
     pub density: *const f64,
-    /// V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or _baryon times k^2 in the unit of its other columns. CLASS: -theta_s/(a H).
+    /// V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it is, for all its columns are over k^2.
+    /// CLASS: -theta_s/(a H), theta_s of the Newtonian gauge, or theta_s + alpha k^2 of the synchronous; its columns are negative: change all signs.
     pub velocity: *const f64,
     /// What the linear spectrum, scaled back with D(a) of the background, stands for: T_m(k, z = 0) D(a). Then growth that depends on k is
     /// accounted for, and modes of total matter are T_m(k, a). NULL for T_m itself: growth as of the background.
