@@ -13,8 +13,9 @@ pub const FIXPAIR_RATIO_DENSITY: i32 = 1;
 /// V_s/T_m: from modes of total matter to v_s/(a H i k/k^2).
 pub const FIXPAIR_RATIO_VELOCITY: i32 = 2;
 
-/// One species of matter, cold dark matter or baryons, from the columns of CAMB or CLASS at the time of the particles, in any common unit. Called
-/// once for each species with one seed, initial conditions are matched: the same phases, and the same moduli over their r.m.s.
+/// One species of matter, cold dark matter or baryons, from the columns of CAMB or CLASS at the time of the particles, in any common unit, all
+/// positive. `linear` of the conditions stays that of total matter. Called once for each species with one seed, initial conditions are matched:
+/// the same phases, and the same moduli over their r.m.s.
 ///
 /// delta_s = (T_s/T_m) delta_m and v_s,k = a H i k/k^2 (V_s/T_m) delta_m,k at first order; the second and third orders are those of total
 /// matter, whose gravity moves both. What this leaves out: the coupling of the difference of the species at second order, isocurvature
