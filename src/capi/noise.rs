@@ -154,8 +154,8 @@ pub unsafe extern "C" fn fixpair_philox4x32_10(
 ///      exec           or NULL
 /// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, _NOT_FINITE for a factor that is NaN,
 ///          infinite, or within 16 times the largest number of the precision, or why the brick is refused
-/// Cost: native about 11 ns a mode and core with AVX2. The others about 15 ns for each mode from l = 0 to the brick's last, and,
-///       before the cores share the rest, 20 ns for each of n^2 entries of the table of seeds, whatever the brick
+/// Cost: native about 11 ns a mode and core with AVX2. The others about 17 ns for each mode from l = 0 to the brick's last, and,
+///       before the cores share the rest, 20 ns for each of n^2 entries of the table of seeds, whatever the brick.
 ///       No scratch
 ///
 /// # Safety

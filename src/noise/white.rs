@@ -47,7 +47,7 @@ const SHORT: usize = 4;
 /// Native: about 10 ns a mode on one AVX2 core where l is contiguous; ten times that in layouts that put l elsewhere, whose modes are
 /// drawn one by one. One write of `out`, no scratch.
 ///
-/// `NGenIc`, `FastPm`: about 15 ns for each mode from l = 0 to the last that is drawn, in any layout, so that a brick which cuts l draws what
+/// `NGenIc`, `FastPm`: about 17 ns for each mode from l = 0 to the last that is drawn, in any layout, so that a brick which cuts l draws what
 /// it does not hold; `FastPm` `Filled` half as much again. Before that one thread draws the whole table of seeds, about 20 ns for each of n^2
 /// entries, whatever the brick. No scratch: a column's seeds lie in its first two modes until the modes take their place.
 ///
