@@ -97,7 +97,7 @@ LETTERS = {"p": c_void_p, "n": c_size_t, "d": c_double, "i": c_int32, "w": ctype
 SIGNATURES = {
     "brick_whole": "pnin", "brick_slab": "pninn", "brick_transposed_slab": "pnnn", "brick_reals": "pp",
     "exec_self_test": "p", "threads_create": "ppn",
-    "realisation_init": "pu", "philox4x32_10": "ppp",
+    "realisation_init": "pu", "philox4x32_10": "ppp", "ranlxd1": "pnu", "ngenic_seeds": "pnpu",
     "cosmology_init": "p", "radiation_density": "pddd", "expansion": "ppnp", "growth_factors": "ppnp",
     "growth_suppression": "pp", "linear_power": "ppnppd", "linear_transfer": "ppnpp", "linear_sigma": "pdpp",
     "alpha": "ppnppdi", "mode_table_length": "pn", "potential_amplitude_table": "pnndppip",

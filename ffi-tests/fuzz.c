@@ -97,8 +97,16 @@ static void meshes(double *data, float *single) {
         realisation.amplitude = choice();
         realisation.phase = choice();
         realisation.nyquist = choice();
-        realisation.scheme = choice();
+        realisation.selection = choice();
+        realisation.sample = (uint32_t)size();
     }
+    /* Of any brick of a large mesh, these draw the whole table of seeds. */
+    if (b.n <= 64) {
+        realisation.scheme = choice();
+        reals = word() % 4 == 0 ? size() : b.count[0] * b.count[1];
+        sane(fixpair_ngenic_seeds((uint32_t *)data, reals % LENGTH, &b, word()));
+    }
+    sane(fixpair_ranlxd1(data, size() % LENGTH, word()));
     sane(fixpair_brick_whole(&c, size(), choice(), size()));
     sane(fixpair_brick_slab(&c, size(), choice(), size(), size()));
     sane(fixpair_brick_transposed_slab(&c, size(), size(), size()));

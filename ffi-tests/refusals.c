@@ -24,6 +24,8 @@ CALL(realisation_init, (P(0), a->u))
 CALL(conditions_init, (P(0), a->u))
 CALL(cosmology_init, (P(0)))
 CALL(philox4x32_10, (P(0), P(1), P(2)))
+CALL(ranlxd1, (P(0), L(0), a->u))
+CALL(ngenic_seeds, (P(0), L(0), P(1), a->u))
 CALL(radiation_density, (P(0), a->d[0], a->d[1], a->d[2]))
 CALL(expansion, (P(0), P(1), L(0), P(2)))
 CALL(growth_factors, (P(0), P(1), L(0), P(2)))
@@ -146,6 +148,19 @@ static void threads(void) {
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.n[0] = SIZE_MAX);
 }
 
+static void seed_tables(void) {
+    fixpair_brick *brick;
+    begin("ngenic_seeds", call_ngenic_seeds);
+    ARRAY(0, OUT, uint32_t, SIDE * SIDE);
+    brick = STRUCT(1, IN, fixpair_brick);
+    MUST(fixpair_brick_whole(brick, SIDE, FIXPAIR_SPACE_FOURIER, 0));
+    length(0, SIDE * SIDE, EXACT);
+    refuse_pointers_and_lengths();
+    ACCEPTED((brick->count[1] = 0, t.a.p[0] = NULL, t.a.n[0] = 0));
+    REFUSED(FIXPAIR_ERROR_LENGTH, brick->count[1] = 1);
+    refuse_bricks(brick);
+}
+
 static void initialisers(void) {
     begin("realisation_init", call_realisation_init);
     STRUCT(0, OUT, fixpair_realisation);
@@ -161,6 +176,11 @@ static void initialisers(void) {
     ARRAY(1, IN, uint32_t, 4);
     ARRAY(2, IN, uint32_t, 2);
     refuse_pointers_and_lengths();
+    begin("ranlxd1", call_ranlxd1);
+    ARRAY(0, OUT, double, 20);
+    length(0, 20, FREE);
+    refuse_pointers_and_lengths();
+    ACCEPTED((t.a.n[0] = 0, t.a.p[0] = NULL));
     begin("mode_table_length", call_mode_table_length);
     ARRAY(0, OUT, size_t, 1);
     t.a.n[0] = SIDE;
@@ -347,6 +367,7 @@ int main(void) {
     bricks();
     threads();
     initialisers();
+    seed_tables();
     backgrounds();
     spectra();
     mode_tables();

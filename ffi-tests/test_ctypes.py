@@ -54,6 +54,14 @@ class Universe:
         block = (ctypes.c_uint32 * 4)()
         library.philox4x32_10(block, (ctypes.c_uint32 * 4)(1, 2, 3, 4), (ctypes.c_uint32 * 2)(5, 6))
         self.case("philox4x32_10", block)
+        uniforms = Buffer(ctypes.c_double, 40)
+        library.ranlxd1(uniforms.start, 40, SEED)
+        self.case("ranlxd1", uniforms)
+        for name, brick in self.bricks().items():
+            columns = brick.count[0] * brick.count[1]
+            seeds = Buffer(ctypes.c_uint32, columns)
+            library.ngenic_seeds(seeds.start, columns, brick, SEED)
+            self.case(f"ngenic_seeds.{name}", seeds)
         r = made(Realisation, library.realisation_init, SEED)
         check(r.struct_size == ctypes.sizeof(r), "a realisation has the size of the header")
         self.case("realisation_init", integers(r.seed, r.scheme, r.amplitude, r.phase, r.nyquist, r.selection, r.sample))
@@ -178,9 +186,13 @@ class Twin:
     def whites(self):
         bricks, table = self.universe.bricks(), self.universe.amplitude
         fixed = self.realisation(amplitude=fixpair.FIXED)
+        ngenic = self.realisation(scheme=fixpair.NGENIC, selection=fixpair.SPHERE, sample=N - 3)
+        fast_pm = self.realisation(scheme=fixpair.FAST_PM, amplitude=fixpair.FIXED, nyquist=fixpair.FILLED)
         for name, brick in bricks.items():
             self.case(f"white_modes.{name}", elements(self.white(brick, self.realisation()), brick))
             self.case(f"white_modes.coloured_{name}", elements(self.white(brick, fixed, table), brick))
+            self.case(f"white_modes.ngenic_{name}", elements(self.white(brick, ngenic), brick))
+            self.case(f"white_modes.fastpm_{name}", elements(self.white(brick, fast_pm, table), brick))
         whole = bricks["whole"]
         mean = self.realisation(amplitude=fixpair.FIXED_TO_MEAN, phase=fixpair.INVERTED, nyquist=fixpair.FILLED)
         self.case("white_modes.mean", elements(self.white(whole, mean), whole))

@@ -1217,7 +1217,8 @@ fixpair_status_t fixpair_fft_init_f32(struct fixpair_fft_f32 *fft,
  * In:  seed
  * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT
  */
-fixpair_status_t fixpair_realisation_init(struct fixpair_realisation *realisation, uint64_t seed);
+fixpair_status_t fixpair_realisation_init(struct fixpair_realisation *realisation,
+                                          uint64_t seed);
 
 /*
  * One block of Philox4x32-10 (Salmon et al. 2011), the generator of the native scheme, for draws of the host's own. The library
@@ -1238,6 +1239,12 @@ fixpair_status_t fixpair_philox4x32_10(uint32_t *output,
  * The phase is 2 pi u1 and the modulus sqrt(-ln u2), of two uniforms of 53 bits; fixing uses the same u1, so that fixed and
  * normal modes are matched. Self-conjugate modes are real. Single precision is the rounded double precision.
  *
+ * Schemes NGENIC and FASTPM draw u1 and u2, of 48 bits, from ranlxd1, seeded for each (i, j) with fixpair_ngenic_seeds, from l = 0
+ * upwards; u2 is drawn again while it is zero. w is the mode that N-GenIC, 2LPTic, 2LPTPNG, L-PICOLA or FastPM multiply by
+ * sqrt(P/V) in delta_k (they transform with exp(+i k.x), too). NGENIC has no modes with a mode number n/2, so that
+ * FIXPAIR_NYQUIST_FILLED is refused; FASTPM filled has FastPM's, and its self-conjugate modes keep sqrt(-ln u2) cos(2 pi u1).
+ * 2LPTic compares floating-point numbers with floor(Nsample/2): modes on the very boundary, which are drawn here, may be cut there.
+ *
  * Out: modes          len reals: modes of the brick
  * In:  brick          of Fourier space, any part of any mesh
  *      realisation
@@ -1245,7 +1252,9 @@ fixpair_status_t fixpair_philox4x32_10(uint32_t *output,
  *      exec           or NULL
  * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, _NOT_FINITE for a factor that is NaN,
  *          infinite, or within 16 times the largest number of the precision, or why the brick is refused
- * Cost: about 11 ns a mode and core with AVX2; no scratch
+ * Cost: native about 11 ns a mode and core with AVX2. The others about 17 ns for each mode from l = 0 to the brick's last, and,
+ *       before the cores share the rest, 20 ns for each of n^2 entries of the table of seeds, whatever the brick.
+ *       No scratch
  */
 fixpair_status_t fixpair_white_modes_f64(double *modes,
                                          size_t len,
@@ -1265,8 +1274,35 @@ fixpair_status_t fixpair_white_modes_f32(float *modes,
                                          const struct fixpair_exec *exec);
 
 /*
- * Imposes the realisation's amplitude, phase and Nyquist choice on unit modes that the host drew itself (its seed and scheme are
- * not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; DC becomes zero.
+ * The first numbers of GSL's ranlxd1, the generator of the schemes NGENIC and FASTPM: RANLUX in double precision at luxury
+ * level 1 (Luescher 1994), multiples of 2^-48 in [0, 1), for draws and checks of the host's own.
+ *
+ * Out: uniforms  len numbers
+ * In:  seed      as gsl_rng_set takes it: 0 counts as 1; otherwise the lower 32 bits are a signed number of which the magnitude's
+ *                lower 31 bits are taken
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT, FIXPAIR_ERROR_OVERFLOW
+ */
+fixpair_status_t fixpair_ranlxd1(double *uniforms,
+                                 size_t len,
+                                 uint64_t seed);
+
+/*
+ * The seeds of the streams of the schemes NGENIC and FASTPM: entries of N-GenIC's table for the brick's columns (i, j).
+ *
+ * Out: seeds  len = count[0] count[1] entries: that of the brick's row i and column j at i count[1] + j
+ * In:  brick  of Fourier space; its third axis does not matter
+ *      seed   of the realisation, as fixpair_ranlxd1 takes it
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, or why the brick is refused
+ * Cost: the whole table is drawn for any brick, about 20 ns for each of its n^2 entries; no scratch
+ */
+fixpair_status_t fixpair_ngenic_seeds(uint32_t *seeds,
+                                      size_t len,
+                                      const struct fixpair_brick *brick,
+                                      uint64_t seed);
+
+/*
+ * Imposes the realisation's amplitude, phase, Nyquist choice and selection on unit modes that the host drew itself (its seed and
+ * scheme are not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; DC and modes outside the selection become zero.
  *
  * In/Out: modes        len reals: Hermitian modes of the brick
  * In:     brick        of Fourier space
@@ -1289,7 +1325,7 @@ fixpair_status_t fixpair_impose_f32(float *modes,
 
 /*
  * Unit modes from the host's own real white noise (independent numbers of unit variance on the cells): transforms, multiplies by
- * n^(-3/2), and imposes amplitude, phase and Nyquist choice as fixpair_impose_f64. So any existing suite whose
+ * n^(-3/2), and imposes amplitude, phase, Nyquist choice and selection as fixpair_impose_f64. So any existing suite whose
  * noise is known on cells can be fixed and paired.
  *
  * In/Out: data         len = fft->length reals: white noise on the cells; on return modes
