@@ -16,4 +16,10 @@ mod shape_rows;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_shapes;
+#[cfg(test)]
+mod tests_shapes_estimate;
+#[cfg(test)]
+mod tests_shapes_templates;
+#[cfg(test)]
 mod tests_whole;
