@@ -39,6 +39,7 @@ pub mod power;
 pub mod resample;
 pub mod run;
 pub mod scatter;
+pub mod shape;
 pub mod spheres;
 pub mod stages;
 pub mod status;

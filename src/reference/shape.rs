@@ -59,16 +59,13 @@ pub(crate) fn template(shape: Shape, n_s: f64, k: [f64; 3]) -> f64 {
     }
 }
 
-/// The quadratic term for f_NL = 1: each mode a sum over all pairs of modes.
-pub(crate) fn quadratic(phi: &Dense, rows: &[ShapeRow], n_s: f64) -> Dense {
+/// X_out[(X_a phi)(X_b phi)], each mode a sum over all pairs of modes; without its mean.
+pub(crate) fn product(phi: &Dense, row: &ShapeRow, n_s: f64) -> Dense {
     let scaled = |field: &Dense, s: f64| {
         field.map(|n| {
             let square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
             if square == 0.0 { 0.0 } else { libm::pow(libm::sqrt(square), exponent(n_s) * s) }
         })
     };
-    rows.iter().fold(Dense::zero(phi.half), |sum, row| {
-        let product = scaled(phi, row.s_a).times(&scaled(phi, row.s_b), phi.half);
-        sum.plus(row.coefficient, &scaled(&product, row.s_out))
-    })
+    scaled(&scaled(phi, row.s_a).times(&scaled(phi, row.s_b), phi.half), row.s_out)
 }
