@@ -5,6 +5,7 @@
 //! gives the field: f(x) = sum_k f_k exp(+i k.x).
 
 pub mod conditions;
+pub mod displacements;
 pub mod lpt;
 pub mod modes;
 pub mod particles;
@@ -12,6 +13,8 @@ pub mod png;
 pub mod realise;
 pub mod shape;
 mod shape_rows;
+pub mod shifted;
+pub mod third;
 
 #[cfg(test)]
 mod tests;
@@ -21,5 +24,7 @@ mod tests_shapes;
 mod tests_shapes_estimate;
 #[cfg(test)]
 mod tests_shapes_templates;
+#[cfg(test)]
+mod tests_third;
 #[cfg(test)]
 mod tests_whole;

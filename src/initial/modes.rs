@@ -154,7 +154,7 @@ fn multiply_row<T: Real, F: Factor, const ADD: bool>(to: &mut [T], from: &[T], n
 }
 
 /// Of `length` modes from z on, in the row (x, y): how many lie inside |n_a| < half.
-fn inside(z: usize, length: usize, [x, y]: [i64; 2], half: usize) -> usize {
+pub(super) fn inside(z: usize, length: usize, [x, y]: [i64; 2], half: usize) -> usize {
     if x.unsigned_abs() as usize >= half || y.unsigned_abs() as usize >= half {
         return 0;
     }
