@@ -215,6 +215,7 @@ static void tables(const fixpair_exec *exec) {
 #define X(name) name##_f32
 #define SUFFIX ".f32"
 #include "conformance_real.h"
+#include "conformance_shape.h"
 #include "conformance_particles.h"
 #include "conformance_estimate.h"
 #include "conformance_gravity.h"
@@ -228,6 +229,7 @@ static void tables(const fixpair_exec *exec) {
 #define X(name) name##_f64
 #define SUFFIX ".f64"
 #include "conformance_real.h"
+#include "conformance_shape.h"
 #include "conformance_particles.h"
 #include "conformance_estimate.h"
 #include "conformance_gravity.h"
@@ -268,6 +270,8 @@ int main(int count, char **arguments) {
         whites_f64(exec);
         stages_f32(exec);
         stages_f64(exec);
+        shapes_f32(exec);
+        shapes_f64(exec);
         universes_f32(exec);
         universes_f64(exec);
         particles_and_meshes_f32(exec);

@@ -13,4 +13,5 @@ mod vectors_gravity;
 mod vectors_halos;
 mod vectors_particles;
 mod vectors_real;
+mod vectors_shape;
 mod vectors_variance;

@@ -329,6 +329,22 @@ static void ids(void) {
     ACCEPTED((brick->count[0] = 0, t.a.n[0] = 0, t.a.p[0] = NULL));
 }
 
+CALL(shape_rows, (P(0), L(0), P(1), a->i[0]))
+
+static void rows_of_shapes(void) {
+    begin("shape_rows", call_shape_rows);
+    argument(0, OUT, 8 * sizeof(fixpair_shape_row), sizeof(double));
+    STRUCT(1, OUT, size_t);
+    length(0, 8, FREE);
+    t.a.i[0] = FIXPAIR_SHAPE_ORTHOGONAL_LSS;
+    refuse_pointers_and_lengths();
+    REFUSED(FIXPAIR_ERROR_CHOICE, t.a.i[0] = FIXPAIR_SHAPE_ROWS);
+    REFUSED(FIXPAIR_ERROR_CHOICE, t.a.i[0] = -1);
+    /* The number of rows is told all the same. */
+    SPOILED(FIXPAIR_ERROR_LENGTH, t.a.n[0] = 7);
+    SPOILED(FIXPAIR_ERROR_LENGTH, (t.a.n[0] = 0, t.a.p[0] = NULL));
+}
+
 #include "refusals_bins.h"
 #include "refusals_steps.h"
 #include "refusals_variance.h"
@@ -342,6 +358,7 @@ static void ids(void) {
 #define SUFFIX "_f32"
 #include "refusals_real.h"
 #include "refusals_stages.h"
+#include "refusals_shape.h"
 #include "refusals_estimate.h"
 #include "refusals_gravity.h"
 #include "refusals_run.h"
@@ -355,6 +372,7 @@ static void ids(void) {
 #define SUFFIX "_f64"
 #include "refusals_real.h"
 #include "refusals_stages.h"
+#include "refusals_shape.h"
 #include "refusals_estimate.h"
 #include "refusals_gravity.h"
 #include "refusals_run.h"
@@ -385,6 +403,9 @@ int main(void) {
     refuse_modes_f64();
     refuse_stages_f32();
     refuse_stages_f64();
+    rows_of_shapes();
+    refuse_shapes_f32();
+    refuse_shapes_f64();
     refuse_universes_f32();
     refuse_universes_f64();
     refuse_particles_f32();

@@ -10,6 +10,7 @@ import sys
 import ctypes_estimate
 import ctypes_gravity
 import ctypes_halos
+import ctypes_shape
 import ctypes_variance
 import fixpair_ctypes as fixpair
 from ctypes_check import (BOX, FINE, FINER, N, PADDING, ROWS, SEED, Buffer, array, check, claims, doubles, elements,
@@ -282,7 +283,7 @@ OPTIONAL = {"white_modes": [3, 4, 6], "fft_init": [6], "initial_conditions_scrat
             "drift": [6, 7, 8], "evolve": [4, 7, 15, 16], "halos": [6, 12], "halo_sums": [6, 13], "fof_labels": [9],
             "fit_suppression": [2], "ratio_of_means": [6], "difference_of_means": [6], "control_variates": [6], "carpool": [8]}
 EXEC = ("particle_ids", "potential_amplitude_table", "alpha_table", "impose", "modes_from_field", "scale_modes",
-        "copy_modes", "add_local", "second_order_source", "displacement", "add_cells", "copy_cells", "interlace",
+        "copy_modes", "add_local", "add_shape", "second_order_source", "displacement", "add_cells", "copy_cells", "interlace",
         "shell_modes", "compensate", "forces", "force", "potential", "fof_relabel", "halo_count", "spheres", "refine_centres")
 # Sizes that follow a pointer and are not its length: sides, an axis, a number of threads.
 NO_LENGTH = {"mode_table_length": 1, "fft_tables_scratch": 1, "fft_scratch": 1, "brick_whole": 1, "brick_slab": 1,
@@ -354,6 +355,7 @@ def main(path, vectors, header):
             twin.transforms()
             twin.whites()
             twin.stages()
+            ctypes_shape.shapes(twin)
             twin.universes()
             ctypes_estimate.particles(twin)
             ctypes_estimate.Estimates(twin).run()

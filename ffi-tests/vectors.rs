@@ -23,6 +23,7 @@ use crate::vectors_gravity::time_cases;
 use crate::vectors_halos::halo_scalars;
 use crate::vectors_particles::ghost_cases;
 use crate::vectors_real::real_cases;
+use crate::vectors_shape::shape_rows;
 use crate::vectors_variance::variance_cases;
 
 /// Side of the mesh, of the finer mesh for squares, and of that for cubes.
@@ -82,6 +83,7 @@ pub(crate) static VECTORS: LazyLock<PathBuf> = LazyLock::new(|| {
     bin_cases(&mut cases);
     time_cases(&mut cases);
     halo_scalars(&mut cases);
+    shape_rows(&mut cases);
     variance_cases(&mut cases);
     real_cases::<f32>(&mut cases, "f32");
     real_cases::<f64>(&mut cases, "f64");

@@ -26,6 +26,7 @@ use crate::vectors_estimate::estimate_cases;
 use crate::vectors_gravity::gravity_cases;
 use crate::vectors_halos::halo_cases;
 use crate::vectors_particles::particle_cases;
+use crate::vectors_shape::shape_cases;
 
 /// Memory that begins on a cache line.
 pub(crate) struct Memory(Vec<[u64; 8]>);
@@ -87,6 +88,7 @@ pub(crate) fn real_cases<T: Real>(cases: &mut Cases, suffix: &str) {
     transform_cases::<T>(&mut add);
     white_cases::<T>(&mut add);
     stage_cases::<T>(&mut add);
+    shape_cases::<T>(&mut add);
     particle_cases::<T>(&mut add);
     estimate_cases::<T>(&mut add);
     gravity_cases::<T>(&mut add);
