@@ -80,7 +80,7 @@ CMB, LSS = 0, 1
 POWER, TRANSFER, EISENSTEIN_HU, EISENSTEIN_HU_SMOOTH = 0, 1, 2, 3
 AS_GIVEN, SIGMA8, AMPLITUDE, A_S = 0, 1, 2, 3
 FIRST, SECOND, THIRD = 1, 2, 3
-LOCAL, EQUILATERAL, ROWS = 0, 1, 5
+LOCAL, EQUILATERAL, ORTHOGONAL, ORTHOGONAL_LSS, FOLDED, ROWS = 0, 1, 2, 3, 4, 5
 RATIO_MATTER, RATIO_DENSITY, RATIO_VELOCITY = 0, 1, 2
 NGP, CIC, TSC, PCS = 1, 2, 3, 4
 COSINE, PARALLEL = 1, 2
@@ -102,11 +102,12 @@ LETTERS = {"p": c_void_p, "n": c_size_t, "d": c_double, "i": c_int32, "w": ctype
 SIGNATURES = {
     "brick_whole": "pnin", "brick_slab": "pninn", "brick_transposed_slab": "pnnn", "brick_reals": "pp",
     "exec_self_test": "p", "threads_create": "ppn",
-    "realisation_init": "pu", "philox4x32_10": "ppp",
+    "realisation_init": "pu", "philox4x32_10": "ppp", "ranlxd1": "pnu", "ngenic_seeds": "pnpu",
     "cosmology_init": "p", "radiation_density": "pddd", "expansion": "ppnp", "growth_factors": "ppnp",
     "growth_suppression": "pp", "linear_power": "ppnppd", "linear_transfer": "ppnpp", "linear_sigma": "pdpp",
     "alpha": "ppnppdi", "mode_table_length": "pn", "potential_amplitude_table": "pnndppip",
-    "alpha_table": "pnndppdip", "species_init": "p", "species_table": "pnpindp", "conditions_init": "pu", "particle_ids": "pnpup", "brick_with_ghosts": "ppid",
+    "alpha_table": "pnndppdip", "species_init": "p", "species_table": "pnpindp", "conditions_init": "pu",
+    "shape_rows": "pnpi", "particle_ids": "pnpup", "brick_with_ghosts": "ppid",
     "binning_init": "ppn", "binning_lengths": "ppppn", "binning_read": "pnpnpnpn", "binning_normalise": "pnpnwd",
     "edges_uniform": "pndd", "edges_wavenumbers": "ppnd", "edges_exact": "pnu", "power_sums_scratch": "pppn",
     "subtract_shot_noise": "pnpnpnwpn", "correlation_modes_scratch": "pp", "correlation_sums_scratch": "pppn",
@@ -142,6 +143,7 @@ TWINS = {
     "initial_conditions_at": "pppppppnp", "third_order_sources_scratch": "pp", "third_order_sources": "pppppppnppnp",
     "transverse_displacement": "pnpppnndpp", "scale_modes": "pnppnp",
     "copy_modes": "pnppnpp", "add_local_scratch": "pp", "add_local": "pnpddppnpnp",
+    "add_shape_scratch": "ppp", "add_shape": "pnpddpnppnp",
     "second_order_source": "pnpnpppppnp", "displacement": "pnpnpndpp", "displace": "ppppnpndddp",
     "deposit_scratch": "ppni", "deposit": "pnpppndidpnp", "read_out_scratch": "ppni", "read_out": "pnpnppdidpnp",
     "add_cells": "pnppnpp", "copy_cells": "pnppnpp", "interlace": "ppnpp", "power_sums": "pnpnnpnppppnp",

@@ -41,6 +41,8 @@ struct Names;
         static constexpr auto at_scratch = fixpair_initial_conditions_at_scratch_##suffix;                 \
         static constexpr auto at = fixpair_initial_conditions_at_##suffix;                                 \
         static constexpr auto white_modes = fixpair_white_modes_##suffix;                                  \
+        static constexpr auto add_shape_scratch = fixpair_add_shape_scratch_##suffix;                      \
+        static constexpr auto add_shape = fixpair_add_shape_##suffix;                                      \
         typedef fixpair_positions_##suffix Positions;                                                      \
         static constexpr auto deposit_scratch = fixpair_deposit_scratch_##suffix;                          \
         static constexpr auto deposit = fixpair_deposit_##suffix;                                          \
@@ -357,6 +359,7 @@ void two_ranks() {
 #include "host_estimate.h"
 #include "host_gravity.h"
 #include "host_initial.h"
+#include "host_shape.h"
 #include "host_variance.h"
 
 /* A few refusals, as a host in C++ meets them: as exceptions, with vectors untouched. */
@@ -398,6 +401,8 @@ int main(int count, char **arguments) {
         one_process<double>(run);
         beyond_second_order<float>(run);
         beyond_second_order<double>(run);
+        shapes<float>(run);
+        shapes<double>(run);
         estimates<float>(run);
         estimates<double>(run);
         runs<float>(run);

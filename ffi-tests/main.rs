@@ -14,4 +14,5 @@ mod vectors_halos;
 mod vectors_initial;
 mod vectors_particles;
 mod vectors_real;
+mod vectors_shape;
 mod vectors_variance;

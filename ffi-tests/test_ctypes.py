@@ -11,6 +11,7 @@ import ctypes_estimate
 import ctypes_gravity
 import ctypes_halos
 import ctypes_initial
+import ctypes_shape
 import ctypes_variance
 import fixpair_ctypes as fixpair
 from ctypes_check import (BOX, FINE, FINER, N, PADDING, ROWS, SEED, Buffer, array, check, claims, doubles, elements,
@@ -55,6 +56,14 @@ class Universe:
         block = (ctypes.c_uint32 * 4)()
         library.philox4x32_10(block, (ctypes.c_uint32 * 4)(1, 2, 3, 4), (ctypes.c_uint32 * 2)(5, 6))
         self.case("philox4x32_10", block)
+        uniforms = Buffer(ctypes.c_double, 40)
+        library.ranlxd1(uniforms.start, 40, SEED)
+        self.case("ranlxd1", uniforms)
+        for name, brick in self.bricks().items():
+            columns = brick.count[0] * brick.count[1]
+            seeds = Buffer(ctypes.c_uint32, columns)
+            library.ngenic_seeds(seeds.start, columns, brick, SEED)
+            self.case(f"ngenic_seeds.{name}", seeds)
         r = made(Realisation, library.realisation_init, SEED)
         check(r.struct_size == ctypes.sizeof(r), "a realisation has the size of the header")
         self.case("realisation_init", integers(r.seed, r.scheme, r.amplitude, r.phase, r.nyquist, r.selection, r.sample))
@@ -179,9 +188,13 @@ class Twin:
     def whites(self):
         bricks, table = self.universe.bricks(), self.universe.amplitude
         fixed = self.realisation(amplitude=fixpair.FIXED)
+        ngenic = self.realisation(scheme=fixpair.NGENIC, selection=fixpair.SPHERE, sample=N - 3)
+        fast_pm = self.realisation(scheme=fixpair.FAST_PM, amplitude=fixpair.FIXED, nyquist=fixpair.FILLED)
         for name, brick in bricks.items():
             self.case(f"white_modes.{name}", elements(self.white(brick, self.realisation()), brick))
             self.case(f"white_modes.coloured_{name}", elements(self.white(brick, fixed, table), brick))
+            self.case(f"white_modes.ngenic_{name}", elements(self.white(brick, ngenic), brick))
+            self.case(f"white_modes.fastpm_{name}", elements(self.white(brick, fast_pm, table), brick))
         whole = bricks["whole"]
         mean = self.realisation(amplitude=fixpair.FIXED_TO_MEAN, phase=fixpair.INVERTED, nyquist=fixpair.FILLED)
         self.case("white_modes.mean", elements(self.white(whole, mean), whole))
@@ -272,7 +285,7 @@ OPTIONAL = {"white_modes": [3, 4, 6], "fft_init": [6], "initial_conditions_scrat
             "drift": [6, 7, 8], "evolve": [4, 7, 15, 16], "halos": [6, 12], "halo_sums": [6, 13], "fof_labels": [9],
             "fit_suppression": [2], "ratio_of_means": [6], "difference_of_means": [6], "control_variates": [6], "carpool": [8]}
 EXEC = ("particle_ids", "potential_amplitude_table", "alpha_table", "species_table", "impose", "modes_from_field",
-        "scale_modes", "copy_modes", "add_local", "second_order_source", "displacement", "third_order_sources",
+        "scale_modes", "copy_modes", "add_local", "add_shape", "second_order_source", "displacement", "third_order_sources",
         "transverse_displacement", "add_cells", "copy_cells", "interlace", "shell_modes", "compensate", "forces", "force",
         "potential", "fof_relabel", "halo_count", "spheres", "refine_centres")
 # Sizes that follow a pointer and are not its length: sides, an axis, a number of threads.
@@ -347,6 +360,7 @@ def main(path, vectors, header):
             twin.transforms()
             twin.whites()
             twin.stages()
+            ctypes_shape.shapes(twin)
             twin.universes()
             ctypes_initial.initial(twin)
             ctypes_estimate.particles(twin)

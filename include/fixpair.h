@@ -187,9 +187,6 @@
 /* V_s/T_m: from modes of total matter to v_s/(a H i k/k^2). */
 #define FIXPAIR_RATIO_VELOCITY 2
 
-/* The caller's own kernel: see fixpair_shape_row. */
-#define FIXPAIR_SHAPE_ROWS 5
-
 /* Zel'dovich displacements. */
 #define FIXPAIR_ORDER_FIRST 1
 
@@ -198,6 +195,24 @@
 
 /* Third order, longitudinal and transverse, whose products never alias. */
 #define FIXPAIR_ORDER_THIRD 3
+
+/* The local shape: Phi_G^2. */
+#define FIXPAIR_SHAPE_LOCAL 0
+
+/* The equilateral template. */
+#define FIXPAIR_SHAPE_EQUILATERAL 1
+
+/* The orthogonal template of the CMB. */
+#define FIXPAIR_SHAPE_ORTHOGONAL 2
+
+/* The orthogonal template whose squeezed limit is right, as halos need it. */
+#define FIXPAIR_SHAPE_ORTHOGONAL_LSS 3
+
+/* The folded (enfolded) template. */
+#define FIXPAIR_SHAPE_FOLDED 4
+
+/* The caller's own kernel, in the rows of fixpair_conditions: see fixpair_shape_row. */
+#define FIXPAIR_SHAPE_ROWS 5
 
 /* Nearest grid point: p = 1. */
 #define FIXPAIR_WINDOW_NGP 1
@@ -1321,6 +1336,12 @@ fixpair_status_t fixpair_philox4x32_10(uint32_t *output,
  * The phase is 2 pi u1 and the modulus sqrt(-ln u2), of two uniforms of 53 bits; fixing uses the same u1, so that fixed and
  * normal modes are matched. Self-conjugate modes are real. Single precision is the rounded double precision.
  *
+ * Schemes NGENIC and FASTPM draw u1 and u2, of 48 bits, from ranlxd1, seeded for each (i, j) with fixpair_ngenic_seeds, from l = 0
+ * upwards; u2 is drawn again while it is zero. w is the mode that N-GenIC, 2LPTic, 2LPTPNG, L-PICOLA or FastPM multiply by
+ * sqrt(P/V) in delta_k (they transform with exp(+i k.x), too). NGENIC has no modes with a mode number n/2, so that
+ * FIXPAIR_NYQUIST_FILLED is refused; FASTPM filled has FastPM's, and its self-conjugate modes keep sqrt(-ln u2) cos(2 pi u1).
+ * 2LPTic compares floating-point numbers with floor(Nsample/2): modes on the very boundary, which are drawn here, may be cut there.
+ *
  * Out: modes          len reals: modes of the brick
  * In:  brick          of Fourier space, any part of any mesh
  *      realisation
@@ -1328,7 +1349,9 @@ fixpair_status_t fixpair_philox4x32_10(uint32_t *output,
  *      exec           or NULL
  * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, _NOT_FINITE for a factor that is NaN,
  *          infinite, or within 16 times the largest number of the precision, or why the brick is refused
- * Cost: about 11 ns a mode and core with AVX2; no scratch
+ * Cost: native about 11 ns a mode and core with AVX2. The others about 17 ns for each mode from l = 0 to the brick's last, and,
+ *       before the cores share the rest, 20 ns for each of n^2 entries of the table of seeds, whatever the brick.
+ *       No scratch
  */
 fixpair_status_t fixpair_white_modes_f64(double *modes,
                                          size_t len,
@@ -1348,8 +1371,35 @@ fixpair_status_t fixpair_white_modes_f32(float *modes,
                                          const struct fixpair_exec *exec);
 
 /*
- * Imposes the realisation's amplitude, phase and Nyquist choice on unit modes that the host drew itself (its seed and scheme are
- * not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; DC becomes zero.
+ * The first numbers of GSL's ranlxd1, the generator of the schemes NGENIC and FASTPM: RANLUX in double precision at luxury
+ * level 1 (Luescher 1994), multiples of 2^-48 in [0, 1), for draws and checks of the host's own.
+ *
+ * Out: uniforms  len numbers
+ * In:  seed      as gsl_rng_set takes it: 0 counts as 1; otherwise the lower 32 bits are a signed number of which the magnitude's
+ *                lower 31 bits are taken
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT, FIXPAIR_ERROR_OVERFLOW
+ */
+fixpair_status_t fixpair_ranlxd1(double *uniforms,
+                                 size_t len,
+                                 uint64_t seed);
+
+/*
+ * The seeds of the streams of the schemes NGENIC and FASTPM: entries of N-GenIC's table for the brick's columns (i, j).
+ *
+ * Out: seeds  len = count[0] count[1] entries: that of the brick's row i and column j at i count[1] + j
+ * In:  brick  of Fourier space; its third axis does not matter
+ *      seed   of the realisation, as fixpair_ranlxd1 takes it
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, or why the brick is refused
+ * Cost: the whole table is drawn for any brick, about 20 ns for each of its n^2 entries; no scratch
+ */
+fixpair_status_t fixpair_ngenic_seeds(uint32_t *seeds,
+                                      size_t len,
+                                      const struct fixpair_brick *brick,
+                                      uint64_t seed);
+
+/*
+ * Imposes the realisation's amplitude, phase, Nyquist choice and selection on unit modes that the host drew itself (its seed and
+ * scheme are not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; DC and modes outside the selection become zero.
  *
  * In/Out: modes        len reals: Hermitian modes of the brick
  * In:     brick        of Fourier space
@@ -1372,7 +1422,7 @@ fixpair_status_t fixpair_impose_f32(float *modes,
 
 /*
  * Unit modes from the host's own real white noise (independent numbers of unit variance on the cells): transforms, multiplies by
- * n^(-3/2), and imposes amplitude, phase and Nyquist choice as fixpair_impose_f64. So any existing suite whose
+ * n^(-3/2), and imposes amplitude, phase, Nyquist choice and selection as fixpair_impose_f64. So any existing suite whose
  * noise is known on cells can be fixed and paired.
  *
  * In/Out: data         len = fft->length reals: white noise on the cells; on return modes
@@ -1934,6 +1984,85 @@ fixpair_status_t fixpair_displacement_f32(float *psi,
                                           double scale,
                                           const struct fixpair_fft_f32 *fft,
                                           const struct fixpair_exec *exec);
+
+/*
+ * Shapes of primordial non-Gaussianity
+ * ====================================
+ */
+
+/*
+ * Copies the rows of a shape: to see them, to change them, or to add others.
+ *
+ * Out: rows   the first `count` of rows_len; no shape has more than 8
+ *      count
+ * In:  shape  FIXPAIR_SHAPE_LOCAL, _EQUILATERAL, _ORTHOGONAL, _ORTHOGONAL_LSS or _FOLDED
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _CHOICE, _LENGTH for too few rows; `count` is then written all the same
+ */
+fixpair_status_t fixpair_shape_rows(struct fixpair_shape_row *rows,
+                                    size_t rows_len,
+                                    size_t *count,
+                                    int32_t shape);
+
+/*
+ * Scratch of fixpair_add_shape_f64: two meshes of work->length reals, one of the reals of `brick`, and 8 bytes for each |n|^2 up to
+ * 3 (n/2)^2, each array rounded up to 64 bytes. With a `work` of 3/2 the side 63 bytes a cell (f32: 32).
+ *
+ * Out: scratch
+ * In:  brick, work  as fixpair_add_shape_f64
+ * Returns: 0, FIXPAIR_ERROR_NULL, _OVERFLOW, or why the brick or the hook is refused
+ */
+fixpair_status_t fixpair_add_shape_scratch_f64(struct fixpair_layout *scratch,
+                                               const struct fixpair_brick *brick,
+                                               const struct fixpair_fft_f64 *work);
+
+/* fixpair_add_shape_scratch_f64 in single precision. */
+fixpair_status_t fixpair_add_shape_scratch_f32(struct fixpair_layout *scratch,
+                                               const struct fixpair_brick *brick,
+                                               const struct fixpair_fft_f32 *work);
+
+/*
+ * Quadratic primordial non-Gaussianity, in place: Phi_G -> Phi_G + f_nl sum over rows of c X_out[(X_a Phi_G)(X_b Phi_G)], without its mean.
+ *
+ * (X_s f)_k is |n|^(e s) f_k, e = (4 - n_s)/3, n = k L/(2 pi): to a factor P_Phi(k)^(-s/3) f_k. The exponents of a row sum to 0. Apply it to the
+ * modes of Phi, after fixing and inverting and before alpha. The mean stays zero, modes with a mode number n/2 receive nothing, and f_nl = 0 or
+ * no rows change no bit. See docs/shapes.md for the rows, their bispectra and their signs.
+ *
+ * In/Out: phi      phi_len reals: Phi_G, then Phi; untouched by every error
+ * In:     brick    of Fourier space, side n
+ *         f_nl
+ *         n_s      tilt: P_Phi is proportional to k^(n_s - 4)
+ *         rows     rows_len rows; fixpair_shape_rows has those of the usual templates
+ *         work     transform on which products are taken: of side n (they alias), or of side 3n/2 or more (exact)
+ *         scratch  scratch_len bytes, see fixpair_add_shape_scratch_f64
+ *         exec     or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _SCRATCH, _HOOK, _BRICK for a side between n and 3n/2, _RANGE for
+ *          |n_s| above 10, for exponents above 8, that do not sum to 0 within 1e-12, or with n^|e s| above 1e18
+ * Cost: transforms of work: local 2, equilateral, orthogonal and folded 7, orthogonal LSS 14
+ */
+fixpair_status_t fixpair_add_shape_f64(double *phi,
+                                       size_t phi_len,
+                                       const struct fixpair_brick *brick,
+                                       double f_nl,
+                                       double n_s,
+                                       const struct fixpair_shape_row *rows,
+                                       size_t rows_len,
+                                       const struct fixpair_fft_f64 *work,
+                                       void *scratch,
+                                       size_t scratch_len,
+                                       const struct fixpair_exec *exec);
+
+/* fixpair_add_shape_f64 in single precision. */
+fixpair_status_t fixpair_add_shape_f32(float *phi,
+                                       size_t phi_len,
+                                       const struct fixpair_brick *brick,
+                                       double f_nl,
+                                       double n_s,
+                                       const struct fixpair_shape_row *rows,
+                                       size_t rows_len,
+                                       const struct fixpair_fft_f32 *work,
+                                       void *scratch,
+                                       size_t scratch_len,
+                                       const struct fixpair_exec *exec);
 
 /*
  * Third order

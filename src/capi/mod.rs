@@ -40,6 +40,7 @@ pub mod pre_initial;
 pub mod resample;
 pub mod run;
 pub mod scatter;
+pub mod shape;
 pub mod species;
 pub mod spheres;
 pub mod stages;

@@ -19,6 +19,12 @@ pub mod third;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_shapes;
+#[cfg(test)]
+mod tests_shapes_estimate;
+#[cfg(test)]
+mod tests_shapes_templates;
+#[cfg(test)]
 mod tests_third;
 #[cfg(test)]
 mod tests_whole;
