@@ -15,6 +15,7 @@ enum { LEAST = 20, STRIDE = sizeof(struct particle) / sizeof(double) };
 int friends_init(struct friends *friends, const struct fixpair_cosmology *cosmology, double box_size, uint64_t particles_total) {
     friends->box_size = box_size;
     friends->least = LEAST;
+    friends->copies = friends->pairs = 0;
     TRY(fixpair_linking_length(&friends->length, LINKING, box_size, particles_total));
     TRY(fixpair_particle_mass(&friends->particle_mass, cosmology->omega_m, box_size, particles_total));
     return 0;
@@ -284,7 +285,7 @@ static int add_up(struct search *search) {
     return broken;
 }
 
-int friends_find(struct fixpair_halo **halos, size_t *count, const struct friends *friends, struct particles *particles,
+int friends_find(struct fixpair_halo **halos, size_t *count, struct friends *friends, struct particles *particles,
                  const struct slabs *slabs) {
     struct search search;
     enum traffic traffic = traffic_of(TRAFFIC_HALOS);
@@ -302,6 +303,8 @@ int friends_find(struct fixpair_halo **halos, size_t *count, const struct friend
         }
         broken = *halos == NULL;
     }
+    friends->copies = search.copies;
+    friends->pairs = search.pairs_len;
     search_close(&search);
     traffic_of(traffic);
     if (broken) fprintf(stderr, "halos are not found\n");

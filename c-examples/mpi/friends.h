@@ -19,6 +19,8 @@ struct friends {
     double length;        /* that links */
     double particle_mass; /* Msun/h */
     uint64_t least;       /* particles of a halo */
+    uint64_t copies;      /* of the last search: particles of others that this process had */
+    uint64_t pairs;       /* and pairs of labels that all processes had from all */
 };
 
 /* b = 0.2 and halos of 20 particles, of so many in all. */
@@ -27,7 +29,7 @@ int friends_init(struct friends *friends, const struct fixpair_cosmology *cosmol
 /*
  * The catalogue, on rank 0, to be freed; elsewhere NULL and none. All processes call it together. Returns 0, or 1 after saying what is wrong.
  */
-int friends_find(struct fixpair_halo **halos, size_t *count, const struct friends *friends, struct particles *particles,
+int friends_find(struct fixpair_halo **halos, size_t *count, struct friends *friends, struct particles *particles,
                  const struct slabs *slabs);
 
 /* The catalogue of one process that holds all particles, by the one-process functions. */

@@ -19,11 +19,14 @@
 #include "together.h"
 #include "traffic.h"
 
-/* FFTs differ by roundings, and so do sums of the same masses in another order; gravity lets both grow. */
-#define APART_BOUND 1e-9
-#define POWER_BOUND 1e-9
+/* Transforms differ by roundings of 1e-16, and so do sums of the same masses in another order. Gravity lets them grow: to 5e-13 of a cell in
+   eight steps. In P(k) the small ones of many particles cancel. */
+#define APART_BOUND 1e-10
+#define POWER_BOUND 1e-12
 /* Of linear theory's account of who crosses borders. */
 #define MOVED_BOUND 0.2
+/* Distances between particles at first, that particles go, before it holds. */
+#define FAR 1.7
 
 struct example {
     struct universe_choice choice;
@@ -31,6 +34,7 @@ struct example {
     int rank, ranks;
     struct universe universe;
     struct pm pm;
+    struct friends friends;
     double mean_displacement; /* <|psi_x|>, over D */
     double *power;            /* a spectrum for each scale factor */
     struct fixpair_halo *halos;
@@ -159,20 +163,26 @@ static int report(struct example *example, const uint64_t sent[TRAFFIC_KINDS]) {
     double expected = budget_moved(&pm->fft.slabs, example->choice.box_size, example->mean_displacement, growth[1].d - growth[0].d);
     double share = (double)moved / (double)universe->particles;
     double most = together_largest((double)pm->most) * example->ranks / (double)universe->particles;
-    CLAIM(example->failures, wrong == 0, "%lu transforms sent %llu bytes from this process, by formula and measured, and so on all", 4 * (unsigned long)forces,
-          (unsigned long long)transforms);
+    uint64_t copies = together_count(example->friends.copies);
+    /* The lattice that particles begin on shows in who crosses, until they have gone further than it is wide. */
+    int far = expected * example->choice.box_size > FAR * example->ranks * example->choice.box_size / (double)example->choice.n;
+    int room = held == meshes || pm->ghosts.inside + pm->fft.hook.length > pm->ghosts.region.count[0] * pm->ghosts.plane;
+    CLAIM(example->failures, wrong == 0, "%lu transforms sent %llu bytes from this process, and from each what the formula says",
+          4 * (unsigned long)forces, (unsigned long long)transforms);
     CLAIM(example->failures, wrong_ghosts == 0, "ghosts of %lu forces %llu bytes", (unsigned long)forces, (unsigned long long)ghosts);
-    /* FFTW may want room of its own beyond the slab. */
-    CLAIM(example->failures, together_count(held < meshes || held > meshes + meshes / 2) == 0, "three meshes with ghosts hold %llu bytes, the formula says %llu",
-          (unsigned long long)held, (unsigned long long)meshes);
-    /* Linear theory knows the displacements of large scales, which cross borders; particles in halos also go to and fro. */
-    CLAIM(example->failures, fabs(share - expected) <= MOVED_BOUND * expected, "%.4f of the particles crossed a border in all steps, linear theory says %.4f", share,
-          expected);
+    CLAIM(example->failures, together_count(held < meshes || !room) == 0, "three meshes hold %llu bytes, or FFTW wants more room",
+          (unsigned long long)meshes);
+    if (far) {
+        CLAIM(example->failures, fabs(share - expected) <= MOVED_BOUND * expected,
+              "%.4f of the particles crossed a border in all steps, linear theory says %.4f", share, expected);
+    }
     if (example->rank == 0) {
         printf("  at most %.2f times the mean number of particles on a process\n", most);
         printf("  sent by rank 0 in all: transforms %llu, ghosts %llu, particles %llu, halos %llu bytes\n",
                (unsigned long long)sent[TRAFFIC_TRANSFORM], (unsigned long long)sent[TRAFFIC_GHOSTS],
                (unsigned long long)sent[TRAFFIC_PARTICLES], (unsigned long long)traffic_bytes(TRAFFIC_HALOS));
+        printf("  for halos %llu copies of particles, %llu pairs of labels\n", (unsigned long long)copies,
+               (unsigned long long)example->friends.pairs);
         for (size_t mesh_factor = 1; mesh_factor <= 2; mesh_factor++) TRY(budget_print(stdout, 4096, mesh_factor, 512, 2000.0));
     }
     return 0;
@@ -180,7 +190,7 @@ static int report(struct example *example, const uint64_t sent[TRAFFIC_KINDS]) {
 
 static int run(struct example *example) {
     uint64_t sent[TRAFFIC_KINDS];
-    struct friends friends;
+    struct friends *friends = &example->friends;
     struct pm *pm = &example->pm;
     if (universe_open(&example->universe, &example->choice) || pm_open(pm, MPI_COMM_WORLD, &example->universe, example->transposed)) return 1;
     example->power = memory_take_doubles((example->choice.steps + 1) * pm->spectrum.shells);
@@ -188,8 +198,8 @@ static int run(struct example *example) {
     for (int kind = 0; kind < TRAFFIC_KINDS; kind++) sent[kind] = traffic_bytes((enum traffic)kind);
     if (pm_evolve(pm, example->power)) return 1;
     for (int kind = 0; kind < TRAFFIC_KINDS; kind++) sent[kind] = traffic_bytes((enum traffic)kind) - sent[kind];
-    if (friends_init(&friends, &example->universe.conditions.cosmology, example->choice.box_size, example->universe.particles)) return 1;
-    if (friends_find(&example->halos, &example->halos_len, &friends, &pm->particles, &pm->fft.slabs)) return 1;
+    if (friends_init(friends, &example->universe.conditions.cosmology, example->choice.box_size, example->universe.particles)) return 1;
+    if (friends_find(&example->halos, &example->halos_len, friends, &pm->particles, &pm->fft.slabs)) return 1;
     print_power(example);
     if (example->check && check(example)) return 1;
     return example->report ? report(example, sent) : 0;

@@ -10,7 +10,7 @@
 const char *const universe_usage =
     "  --particles N     on a side; default: 32\n"
     "  --mesh-factor B   cells over particles on a side, 1 to 3; default: 2\n"
-    "  --box L           in Mpc/h; default: 64\n"
+    "  --box L           in Mpc/h; default: 32\n"
     "  --seed S          default: 1\n"
     "  --scheme N        FIXPAIR_SCHEME_...; default: 0\n"
     "  --amplitude N     FIXPAIR_AMPLITUDE_...; default: 1, fixed\n"
@@ -33,7 +33,7 @@ void universe_defaults(struct universe_choice *choice) {
     choice->phase = FIXPAIR_PHASE_ORIGINAL;
     choice->order = FIXPAIR_ORDER_SECOND;
     choice->f_nl = 100.0;
-    choice->box_size = 64.0;
+    choice->box_size = 32.0;
     choice->start = 9.0;
 }
 
