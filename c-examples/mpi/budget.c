@@ -8,6 +8,10 @@
 
 #define PI 3.14159265358979323846
 
+/* Pairs of labels over copies of particles at z = 0, as mpi_pm --report finds them; and bytes of one, with its place in the map. */
+#define PAIRS 0.06
+#define PAIR 48.0
+
 /* The share of `whole` that FFTW-MPI gives a process. */
 static uint64_t block(uint64_t whole, const struct slabs *slabs) {
     uint64_t ranks = (uint64_t)slabs->ranks, size = (whole + ranks - 1) / ranks, first = size * (uint64_t)slabs->rank;
@@ -16,7 +20,8 @@ static uint64_t block(uint64_t whole, const struct slabs *slabs) {
 
 /* FFTW-MPI turns a matrix of m planes and some columns over: of rows of modes to leave it transposed, of single modes to turn it back. */
 uint64_t budget_transform(const struct fftw_slabs *fft) {
-    uint64_t m = fft->slabs.n, modes = m / 2 + 1, planes = slabs_planes(&fft->slabs, fft->slabs.rank), columns = block(m * modes, &fft->slabs);
+    uint64_t m = fft->slabs.n, modes = m / 2 + 1, planes = slabs_planes(&fft->slabs, fft->slabs.rank);
+    uint64_t columns = block(m * modes, &fft->slabs);
     if (fft->transposed) return 2 * sizeof(double) * planes * (m - fft->rows) * modes;
     return 2 * sizeof(double) * (planes * (m * modes - columns) + columns * (m - planes));
 }
@@ -147,7 +152,7 @@ int budget_print(FILE *stream, size_t n, size_t mesh_factor, size_t ranks, doubl
     int32_t window = mesh_factor == 1 ? FIXPAIR_WINDOW_PCS : FIXPAIR_WINDOW_CIC;
     double m = (double)(mesh_factor * n), planes = ceil(m / (double)ranks), ghosts = mesh_factor == 1 ? 3.0 : 1.0;
     double count = pow((double)n, 3.0) / (double)ranks, spacing = box_size / (double)n, depth = box_size / (double)ranks;
-    double lines[10][2], scale_factors[STEPS + 1], growth = 0.0;
+    double lines[11][2], scale_factors[STEPS + 1], growth = 0.0;
     struct fixpair_growth at[STEPS + 1];
     struct fixpair_conditions conditions;
     struct theory theory;
@@ -167,26 +172,29 @@ int budget_print(FILE *stream, size_t n, size_t mesh_factor, size_t ranks, doubl
         lines[3][column] = (double)asked.power.size;
         lines[4][column] = (double)asked.start.size;
         lines[5][column] = 16.0 * count * (1.0 + copies) + s * count * copies + fmax((double)asked.labels.size, (double)asked.halos.size);
-        lines[6][column] = 4.0 * planes * (1.0 - planes / m) * plane;
-        lines[7][column] = 4.0 * ghosts * plane;
-        lines[8][column] = moved * s * count;
-        lines[9][column] = 8.0 * (double)asked.words;
+        lines[6][column] = PAIR * PAIRS * 0.2 * (double)n * (double)n * (double)ranks;
+        lines[7][column] = 4.0 * planes * (1.0 - planes / m) * plane;
+        lines[8][column] = 4.0 * ghosts * plane;
+        lines[9][column] = moved * s * count;
+        lines[10][column] = 8.0 * (double)asked.words;
     }
-    fprintf(stream, "\n%lu^3 particles, %.0f^3 cells, %lu processes, %.0f planes each, box of %.0f Mpc/h; GB (1e9 bytes) a process\n", (unsigned long)n,
-            m, (unsigned long)ranks, planes, box_size);
+    fprintf(stream, "\n%lu^3 particles, %.0f^3 cells, %lu processes, %.0f planes each, box of %.0f Mpc/h; GB (1e9 bytes) a process\n",
+            (unsigned long)n, m, (unsigned long)ranks, planes, box_size);
     fprintf(stream, "    %-52s %9s %9s\n", "", "single", "double");
     line(stream, "particles, s n^3/R", lines[0]);
     line(stream, "three meshes and ghosts, w (3 (p + d) + d) m (m + 2)", lines[1]);
     line(stream, "scratch of deposit and kick", lines[2]);
     line(stream, "scratch of P(k)", lines[3]);
     line(stream, "scratch of the initial conditions, before the meshes", lines[4]);
-    line(stream, "halos, in place of the meshes, without pairs", lines[5]);
-    line(stream, "sent a step: transforms, 4 w p (m - p) (m + 2)", lines[6]);
-    line(stream, "sent a step: ghosts, 4 w d m (m + 2)", lines[7]);
-    line(stream, "sent a step: particles, s n^3/R <|psi_x|> (D1 - D0)/D", lines[8]);
-    line(stream, "sent a step: P(k)", lines[9]);
-    fprintf(stream, "    <|psi_x|> is %.2f Mpc/h at z = 0, the largest of %d steps moves %.1f%% of the particles;\n", theory.displacement, STEPS,
-            100.0 * moved);
-    fprintf(stream, "    slabs of %.2f Mpc/h hold particles in number within %.1f%% (r.m.s.) of the mean at z = 0\n", depth, 100.0 * theory.slab);
+    line(stream, "halos, in place of the meshes: labels and scratch", lines[5]);
+    line(stream, "halos: pairs of labels of all processes", lines[6]);
+    line(stream, "sent a step: transforms, 4 w p (m - p) (m + 2)", lines[7]);
+    line(stream, "sent a step: ghosts, 4 w d m (m + 2)", lines[8]);
+    line(stream, "sent a step: particles, s n^3/R (R/L) <|psi_x|> dD", lines[9]);
+    line(stream, "sent a step: P(k)", lines[10]);
+    fprintf(stream, "    <|psi_x|> is %.2f Mpc/h at z = 0, the largest of %d steps moves %.1f%% of the particles;\n", theory.displacement,
+            (int)STEPS, 100.0 * moved);
+    fprintf(stream, "    slabs of %.2f Mpc/h hold particles in number within %.1f%% (r.m.s.) of the mean at z = 0\n", depth,
+            100.0 * theory.slab);
     return 0;
 }

@@ -1,8 +1,9 @@
 /*
- * What a run takes of each process, by formula: memory, and bytes sent in a step. Beside what a run took, and for one that does not fit here.
+ * What a run takes of each process, by formula: memory, and bytes sent in a step. Beside what a run took, and for one that does not fit
+ * here.
  *
- * n particles and m = B n cells on a side; R processes, p = m/R planes each, d ghost planes before and after the slab together; w bytes a real,
- * s bytes a particle.
+ * n particles and m = B n cells on a side; R processes, p = m/R planes each, d ghost planes before and after the slab together; w bytes a
+ * real, s bytes a particle.
  */
 
 #ifndef BUDGET_H
@@ -25,8 +26,8 @@ uint64_t budget_ghosts(const struct ghosts *ghosts);
 uint64_t budget_meshes(const struct ghosts *ghosts);
 
 /*
- * The share of all particles that cross a border while the growth factor goes from D0 to D1, in linear theory: (R/L) <|psi_x|> (D1 - D0), psi the
- * displacement over D; 0 on one process.
+ * The share of all particles that cross a border while the growth factor goes from D0 to D1, in linear theory: (R/L) <|psi_x|> (D1 - D0),
+ * psi the displacement over D; 0 on one process.
  */
 double budget_moved(const struct slabs *slabs, double box_size, double mean_displacement, double growth);
 

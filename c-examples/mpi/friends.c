@@ -289,7 +289,8 @@ int friends_find(struct fixpair_halo **halos, size_t *count, struct friends *fri
                  const struct slabs *slabs) {
     struct search search;
     enum traffic traffic = traffic_of(TRAFFIC_HALOS);
-    int broken = search_open(&search, friends, slabs, particles) || lend_all(&search) || gather_copies(&search) || label(&search) || pair(&search) || add_up(&search);
+    int broken = search_open(&search, friends, slabs, particles) || lend_all(&search) || gather_copies(&search) || label(&search) ||
+                 pair(&search) || add_up(&search);
     int32_t outcome = 0;
     *halos = NULL;
     *count = 0;

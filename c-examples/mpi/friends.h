@@ -27,7 +27,8 @@ struct friends {
 int friends_init(struct friends *friends, const struct fixpair_cosmology *cosmology, double box_size, uint64_t particles_total);
 
 /*
- * The catalogue, on rank 0, to be freed; elsewhere NULL and none. All processes call it together. Returns 0, or 1 after saying what is wrong.
+ * The catalogue, on rank 0, to be freed; elsewhere NULL and none. All processes call it together. Returns 0, or 1 after saying what is
+ * wrong.
  */
 int friends_find(struct fixpair_halo **halos, size_t *count, struct friends *friends, struct particles *particles,
                  const struct slabs *slabs);

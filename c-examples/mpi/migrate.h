@@ -22,7 +22,10 @@ struct particles {
     size_t count, capacity;
 };
 
-/* Room for so many, of which there are none yet. Returns 0, or 1 after saying what is wrong. particles_close takes a struct of zeros too. */
+/*
+ * Room for so many, of which there are none yet. Returns 0, or 1 after saying what is wrong. particles_close takes a struct of zeros
+ * too.
+ */
 int particles_open(struct particles *particles, size_t capacity);
 
 void particles_close(struct particles *particles);

@@ -49,8 +49,9 @@ static int check_hook(struct example *example) {
     fixpair_status_t status = fixpair_fft_self_test_f64(fft, data, fft->length);
     free(data);
     if (status != FIXPAIR_OK) report_status(__FILE__, __LINE__, status);
-    CLAIM(example->failures, together_count(status != FIXPAIR_OK) == 0, "FFTW-MPI keeps the contract of the transform on %d processes, modes %s",
-          example->ranks, example->transposed ? "transposed" : "in order");
+    CLAIM(example->failures, together_count(status != FIXPAIR_OK) == 0,
+          "FFTW-MPI keeps the contract of the transform on %d processes, modes %s", example->ranks,
+          example->transposed ? "transposed" : "in order");
     return 0;
 }
 
@@ -80,8 +81,8 @@ static int check_noise(struct example *example) {
     free(part);
     TRY(outcome);
     uint64_t different = together_count(other), checked = together_count(modes);
-    CLAIM(example->failures, different == 0 && checked == n * n * (n / 2 + 1), "each of %lu random modes has the bits that it has on one process",
-          (unsigned long)checked);
+    CLAIM(example->failures, different == 0 && checked == n * n * (n / 2 + 1),
+          "each of %lu random modes has the bits that it has on one process", (unsigned long)checked);
     return 0;
 }
 
@@ -98,8 +99,11 @@ static int check_power(struct example *example) {
     }
     free(power);
     /* Transforms err by a few 1e-16 of the r.m.s.; the smallest modes of Phi^2 are some 1e-3 of it. */
-    CLAIM(example->failures, apart < 1e-12, "P(k) of the linear density is that of one process to %.1e in %lu shells", apart, (unsigned long)shells);
-    if (choice->f_nl == 0.0 && choice->g_nl == 0.0) CLAIM(example->failures, different == 0, "and, as the field is Gaussian, to the last bit");
+    CLAIM(example->failures, apart < 1e-12, "P(k) of the linear density is that of one process to %.1e in %lu shells", apart,
+          (unsigned long)shells);
+    if (choice->f_nl == 0.0 && choice->g_nl == 0.0) {
+        CLAIM(example->failures, different == 0, "and, as the field is Gaussian, to the last bit");
+    }
     return 0;
 }
 
@@ -111,7 +115,7 @@ static void check_particles(struct example *example) {
     faster = together_largest(faster);
     for (size_t i = 0; i < 3 * count; i++) fastest = fmax(fastest, fabs(example->alone.velocity[i]));
     uint64_t made = together_count(example->particles.count);
-    CLAIM(example->failures, made == count, "there are %lu particles, on this process %lu", (unsigned long)made,
+    CLAIM(example->failures, made == count, "there are %lu particles, %lu of them on this process", (unsigned long)made,
           (unsigned long)example->particles.count);
     /* Displacements are of the order of a cell, transforms err by a few 1e-16 of their r.m.s., positions below L are rounded to 1e-16 L = n
        1e-16 cells: below 1e-12 for any n up to 1000. */
@@ -124,8 +128,8 @@ static void check_traffic(struct example *example, uint64_t sent) {
     uint64_t each = budget_transform(&example->fft), left = each == 0 ? sent : sent % each;
     double transforms = each == 0 ? 0.0 : (double)(sent / each);
     uint64_t odd = together_count(left != 0);
-    CLAIM(example->failures, odd == 0, "%.0f transforms sent %.0f bytes each from this process, and every process what the formula says", transforms,
-          (double)each);
+    CLAIM(example->failures, odd == 0, "%.0f transforms sent %.0f bytes each from this process, and from each what the formula says",
+          transforms, (double)each);
 }
 
 /* One file of all positions in the order of ids, which is that of ranks: each process writes its part. */

@@ -1,6 +1,6 @@
 /*
- * A particle-mesh run on several processes: slabs of FFTW-MPI, ghost planes and particles exchanged with MPI, kernels of the library in between;
- * P(k) of each step, and halos over the borders of slabs at the end.
+ * A particle-mesh run on several processes: slabs of FFTW-MPI, ghost planes and particles exchanged with MPI, kernels of the library in
+ * between; P(k) of each step, and halos over the borders of slabs at the end.
  *
  *     mpiexec -n 4 mpi_pm [options]
  */
@@ -19,8 +19,8 @@
 #include "together.h"
 #include "traffic.h"
 
-/* Transforms differ by roundings of 1e-16, and so do sums of the same masses in another order. Gravity lets them grow: to 5e-13 of a cell in
-   eight steps. In P(k) the small ones of many particles cancel. */
+/* Transforms differ by roundings of 1e-16, and so do sums of the same masses in another order. Gravity lets them grow: to 5e-13 of a
+   cell in eight steps. In P(k) those of many particles cancel. */
 #define APART_BOUND 1e-10
 #define POWER_BOUND 1e-12
 /* Of linear theory's account of who crosses borders. */
@@ -95,7 +95,8 @@ static int check_ids(struct example *example) {
     for (size_t i = 0; i < count; i++) wrong += times[i] != 1;
     free(times);
     outside = together_count(outside);
-    CLAIM(example->failures, wrong == 0 && outside == 0, "each of %lu particles is on one process, whose slab it is in", (unsigned long)count);
+    CLAIM(example->failures, wrong == 0 && outside == 0, "each of %lu particles is on one process, whose slab it is in",
+          (unsigned long)count);
     return 0;
 }
 
@@ -192,7 +193,8 @@ static int run(struct example *example) {
     uint64_t sent[TRAFFIC_KINDS];
     struct friends *friends = &example->friends;
     struct pm *pm = &example->pm;
-    if (universe_open(&example->universe, &example->choice) || pm_open(pm, MPI_COMM_WORLD, &example->universe, example->transposed)) return 1;
+    if (universe_open(&example->universe, &example->choice)) return 1;
+    if (pm_open(pm, MPI_COMM_WORLD, &example->universe, example->transposed)) return 1;
     example->power = memory_take_doubles((example->choice.steps + 1) * pm->spectrum.shells);
     if (example->power == NULL || pm_begin(pm) || measure_displacement(example)) return 1;
     for (int kind = 0; kind < TRAFFIC_KINDS; kind++) sent[kind] = traffic_bytes((enum traffic)kind);

@@ -32,7 +32,8 @@ int spectrum_open(struct spectrum *spectrum, MPI_Comm comm, const struct fixpair
 void spectrum_close(struct spectrum *spectrum);
 
 /*
- * All processes call it together, and all get the whole. `factor`: as for fixpair_binning_normalise; `compensation`: FIXPAIR_COMPENSATION_...
+ * All processes call it together, and all get the whole. `factor`: as for fixpair_binning_normalise; `compensation`:
+ * FIXPAIR_COMPENSATION_...
  */
 int spectrum_measure(struct spectrum *spectrum, const double *modes, size_t len, int32_t compensation, double factor);
 

@@ -36,7 +36,10 @@ int universe_open(struct universe *universe, const struct universe_choice *choic
 
 void universe_close(struct universe *universe);
 
-/* Sets a member by the name of its option, without dashes. Returns 0, 1 where the text is no such number, -1 where there is no such option. */
+/*
+ * Sets a member by the name of its option, without dashes. Returns 0, 1 where the text is no such number, -1 where there is no such
+ * option.
+ */
 int universe_option(struct universe_choice *choice, const char *name, const char *text);
 
 /* What these options are, for a usage message. */

@@ -18,4 +18,6 @@ pub mod third;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_parts;
+#[cfg(test)]
 mod tests_whole;

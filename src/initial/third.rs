@@ -62,15 +62,7 @@ pub fn second_order_exact<T: Real>(
             }
         })?;
         fft.forward(meshes[0])?;
-        gather_shift(
-            [&mut *out],
-            [&*meshes[0]],
-            &modes,
-            scale,
-            shift,
-            half_cells,
-            exec,
-        )?;
+        gather_shift([&mut *out], [&*meshes[0]], &modes, scale, shift, half_cells, exec)?;
     }
     Ok(())
 }
@@ -106,7 +98,8 @@ pub fn third_order_sources<T: Real>(
         let [a, b, c, d, e, f, g, h, i, j, k, l] = meshes.each_mut().map(|mesh| &mut **mesh);
         walk::<T, 5, 7>(exec, &cells, [a, b, c, d, e], [f, g, h, i, j, k, l], &|_, sources, rows| {
             for x in 0..rows[0].len() {
-                let p = [sources[0][x], sources[1][x], sources[2][x], sources[3][x], sources[4][x], rows[0][x]];
+                let p =
+                    [sources[0][x], sources[1][x], sources[2][x], sources[3][x], sources[4][x], rows[0][x]];
                 let q = core::array::from_fn(|m| rows[m + 1][x]);
                 let values = products(p, q);
                 for m in 0..5 {
@@ -131,8 +124,7 @@ fn products<T: Real>(p: [T; 6], q: [T; 6]) -> [T; 5] {
     let [q_xx, q_yy, q_zz, q_xy, q_xz, q_yz] = q;
     let determinant = xx * (yy * zz - yz * yz) - xy * (xy * zz - xz * yz) + xz * (xy * yz - yy * xz);
     let off_diagonal = xy * q_xy + xz * q_xz + yz * q_yz;
-    let mixed =
-        xx * (q_yy + q_zz) + yy * (q_xx + q_zz) + zz * (q_xx + q_yy) - (off_diagonal + off_diagonal);
+    let mixed = xx * (q_yy + q_zz) + yy * (q_xx + q_zz) + zz * (q_xx + q_yy) - (off_diagonal + off_diagonal);
     [
         determinant,
         mixed,
