@@ -4,10 +4,11 @@ use std::sync::Mutex;
 use std::vec;
 use std::vec::Vec;
 
-use super::conditions::{Order, initial_conditions, initial_conditions_scratch};
+use super::conditions::{InitialConditions, Order, initial_conditions, initial_conditions_scratch};
 use super::particles::{Components, particle_ids};
 use super::png::Local;
-use super::realise::{Field, linear_density};
+use super::realise::{Field, FieldWork, linear_density};
+use super::shape::Shape;
 use super::tests_whole::{conditions, particles, realisation, tables};
 use crate::estimate::binning::{Bin, Binning, read_sums};
 use crate::estimate::compensation::Compensation;
@@ -15,7 +16,7 @@ use crate::estimate::power::{power_sums, power_sums_scratch};
 use crate::exec::Serial;
 use crate::fft::Fft3;
 use crate::mesh::{Brick, Space};
-use crate::noise::{Amplitude, Phase, white_modes};
+use crate::noise::{Amplitude, Phase, Realisation, Scheme, white_modes};
 use crate::real::Real;
 use crate::reference::built::{Memory, serial};
 use crate::reference::parts::{Meeting, Part};
@@ -69,7 +70,13 @@ fn addresses(modes: &Brick) -> impl Iterator<Item = (usize, usize)> {
 
 #[test]
 fn random_modes_of_pencils_have_the_bits_of_the_whole() {
-    let random = realisation(21, Amplitude::Normal, Phase::Inverted);
+    for scheme in [Scheme::Native, Scheme::NGenIc, Scheme::FastPm] {
+        modes_have_the_bits_of_the_whole(scheme);
+    }
+}
+
+fn modes_have_the_bits_of_the_whole(scheme: Scheme) {
+    let random = Realisation { scheme, ..realisation(21, Amplitude::Normal, Phase::Inverted) };
     let whole = Brick::whole(SIDE, Space::Fourier).unwrap();
     let mut all = vec![0.0_f64; whole.reals()];
     white_modes(&mut all, &whole, &random, &Serial).unwrap();
@@ -86,18 +93,17 @@ fn random_modes_of_pencils_have_the_bits_of_the_whole() {
 }
 
 /// Positions and velocities by id, from all processes.
-fn particles_of_pencils<T: Real>(local: Local, order: Order) -> (Vec<T>, Vec<T>) {
+fn particles_of_pencils<T: Real>(conditions: &InitialConditions<'_>) -> (Vec<T>, Vec<T>) {
     let all = Mutex::new((vec![T::ZERO; 3 * SIDE.pow(3)], vec![T::ZERO; 3 * SIDE.pow(3)]));
     on_pencils::<T>(|fft| {
-        let mut conditions = conditions(realisation(11, Amplitude::Fixed, Phase::Original), 0.0);
-        (conditions.local, conditions.order) = (local, order);
         let cells = *fft.configuration();
         let count = cells.elements();
         let (mut x, mut v, mut ids) = (vec![T::ZERO; 3 * count], vec![T::ZERO; 3 * count], vec![0; count]);
-        let mut scratch = Memory::new(initial_conditions_scratch(order, fft as &dyn Fft3<T>, None).unwrap());
+        let mut scratch =
+            Memory::new(initial_conditions_scratch(conditions.parts(), fft as &dyn Fft3<T>, None).unwrap());
         let (mut position, mut velocity) =
             (Components::triples(&mut x).unwrap(), Components::triples(&mut v).unwrap());
-        initial_conditions(&mut position, &mut velocity, &conditions, fft, None, scratch.get(), &Serial)
+        initial_conditions(&mut position, &mut velocity, conditions, fft, None, scratch.get(), &Serial)
             .unwrap();
         particle_ids(&mut ids, &cells, 0, &Serial).unwrap();
         let mut all = all.lock().unwrap();
@@ -113,18 +119,18 @@ fn particles_of_pencils<T: Real>(local: Local, order: Order) -> (Vec<T>, Vec<T>)
 /// From seed to 2LPT particles with f_NL: the transform of the pencils is that of the whole mesh behind copies, so that nothing else may differ.
 #[test]
 fn particles_of_pencils_have_the_bits_of_the_whole() {
-    fn check<T: Real>(order: Order) {
-        let local = Local { f_nl: 100.0, g_nl: 0.0 };
-        let mut conditions = conditions(realisation(11, Amplitude::Fixed, Phase::Original), local.f_nl);
-        conditions.order = order;
+    fn check<T: Real>(order: Order, shape: Shape) {
+        let mut conditions = conditions(realisation(11, Amplitude::Fixed, Phase::Original), 100.0);
+        (conditions.order, conditions.shape) = (order, shape.rows());
         let whole = particles::<T>(SIDE, &conditions, &Serial, false);
-        let parts = particles_of_pencils::<T>(local, order);
+        let parts = particles_of_pencils::<T>(&conditions);
         assert!(parts.0 == whole.0, "positions");
         assert!(parts.1 == whole.1, "velocities");
     }
-    check::<f64>(Order::Second);
-    check::<f32>(Order::Second);
-    check::<f64>(Order::First);
+    check::<f64>(Order::Second, Shape::Local);
+    check::<f32>(Order::Second, Shape::Local);
+    check::<f64>(Order::First, Shape::Equilateral);
+    check::<f64>(Order::Third, Shape::Local);
 }
 
 /// g_NL takes <Phi_G^2> from all processes.
@@ -134,7 +140,7 @@ fn g_nl_of_pencils_is_that_of_the_whole() {
     let mut conditions = conditions(realisation(11, Amplitude::Fixed, Phase::Original), 0.0);
     conditions.local = local;
     let whole = particles::<f64>(SIDE, &conditions, &Serial, false);
-    let parts = particles_of_pencils::<f64>(local, Order::Second);
+    let parts = particles_of_pencils::<f64>(&conditions);
     let fastest = whole.1.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     for (a, b) in parts.1.iter().zip(&whole.1) {
         // The mean is a sum in another order: a few roundings of a term that is of the order of the field itself.
@@ -165,10 +171,13 @@ fn power_of_pencils_adds_up_to_that_of_the_whole() {
             realisation: realisation(4, Amplitude::Normal, Phase::Original),
             potential_amplitude: &potential,
             local: Local { f_nl: 100.0, g_nl: 0.0 },
+            shape: Shape::Local.rows(),
+            n_s: 1.0,
             transfer: &alpha,
         };
         let mut partial = vec![[0.0]; SIDE];
-        linear_density(&mut density, &field, fft, None, &mut mesh, &mut partial, &Serial).unwrap();
+        let work = FieldWork { mesh: &mut mesh, rest: &mut [], table: &mut [], partial: &mut partial };
+        linear_density(&mut density, &field, fft, None, work, &Serial).unwrap();
         let mut scratch = Memory::new(power_sums_scratch(&brick, &binning, 1).unwrap());
         let (none, modes) = ([Compensation::None], [&density[..]]);
         power_sums(sums, &modes, &[[0, 0]], &none, &brick, &binning, scratch.get(), &Serial).unwrap();
