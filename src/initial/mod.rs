@@ -19,6 +19,8 @@ pub mod third;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_parts;
+#[cfg(test)]
 mod tests_shapes;
 #[cfg(test)]
 mod tests_shapes_estimate;
