@@ -13,6 +13,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* Lengths of the file in one Mpc/h. */
 #define GADGET_KPC 1000.0
@@ -76,6 +77,13 @@ int gadget_write(const char *path, const struct gadget_universe *universe, const
                  size_t id_bytes);
 
 /*
+ * Writes a file of any units, one of a snapshot of several too: the header as it is, positions times `length`, at or beyond header->box_size
+ * brought to 0, and velocities times `velocity`. The same otherwise.
+ */
+int gadget_write_file(const char *path, const struct gadget_header *header, const struct gadget_particles *particles, double length,
+                      double velocity, size_t id_bytes);
+
+/*
  * Reads a file of this machine's byte order that holds particles of type 1 only. Returns 0, or 1 after saying what is wrong; in
  * both cases gadget_close gives the memory back, as it does for a struct of zeros.
  */
@@ -86,6 +94,9 @@ int gadget_read(struct gadget_file *file, const char *path);
  * 0 if neither does.
  */
 double gadget_unit(const struct gadget_header *header);
+
+/* Reads the next record of a file, of `bytes` between two markers. Returns 0 if that is what stands there. */
+int gadget_read_record(FILE *stream, void *data, size_t bytes);
 
 void gadget_close(struct gadget_file *file);
 
