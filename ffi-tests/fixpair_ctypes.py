@@ -25,7 +25,7 @@ Realisation = structure("Realisation", struct_size=c_size_t, seed=c_uint64, sche
                         phase=c_int32, nyquist=c_int32)
 Cosmology = structure("Cosmology", struct_size=c_size_t, omega_m=c_double, omega_de=c_double, omega_r=c_double,
                       omega_b=c_double, h=c_double, n_s=c_double, w0=c_double, wa=c_double, t_cmb=c_double)
-Growth = structure("Growth", d=c_double, f=c_double, d2=c_double, f2=c_double)
+Growth = structure("Growth", **dict.fromkeys("d f d2 f2 d3a f3a d3b f3b d3c f3c".split(), c_double))
 Linear = structure("Linear", struct_size=c_size_t, source=c_int32, normalisation=c_int32, k=ctypes.POINTER(c_double),
                    value=ctypes.POINTER(c_double), rows=c_size_t, amount=c_double)
 Conditions = structure("Conditions", struct_size=c_size_t, realisation=Realisation, cosmology=Cosmology, linear=Linear,

@@ -1,19 +1,23 @@
-//! Growth of linear and second-order displacements, from their differential equations.
+//! Growth of displacements to third order, from their differential equations.
 //!
 //! With ' = d/dlna and matter alone clustering:
 //!
 //! ```text
 //! D''  + (2 + dlnE/dlna) D'  = (3/2) Om(a) D,           D(1) = 1
-//! D2'' + (2 + dlnE/dlna) D2' = (3/2) Om(a) (D2 - D^2),  x = q - D grad phi1 + D2 grad phi2
+//! D2'' + (2 + dlnE/dlna) D2' = (3/2) Om(a) (D2 - D^2),  x = q - D grad phi1 + D2 grad phi2 + third order
+//! D3a'' + (2 + dlnE/dlna) D3a' = (3/2) Om(a) (D3a - 2 D^3)
+//! D3b'' + (2 + dlnE/dlna) D3b' = (3/2) Om(a) (D3b + D^3 - D D2)
+//! D3c'' + (2 + dlnE/dlna) D3c' = (3/2) Om(a) D^3
 //! ```
 //!
-//! (Bouchet et al. 1995, astro-ph/9406013). In an Einstein-de Sitter universe D = a, D2 = -(3/7) a^2; otherwise D2 is near
-//! -(3/7) D^2 Om(a)^(-1/143), which is a check here and not a source. D2 is not normalised to 1: it belongs to this D.
+//! (Bouchet et al. 1995, astro-ph/9406013; Catelan 1995, astro-ph/9406016; which spatial term goes with which is said in
+//! [`crate::initial::third`]). In an Einstein-de Sitter universe D = a, D2 = -(3/7) a^2, D3a = -(1/3) a^3, D3b = (5/21) a^3, D3c = (1/7) a^3;
+//! otherwise D2 is near -(3/7) D^2 Om(a)^(-1/143), which is a check here and not a source. Only D is normalised to 1: the others belong to it.
 //!
-//! The equations are solved for u = D/a and v = D2/a^2, which are constant while matter dominates, in equal steps of ln a
+//! The equations are solved for D/a, D2/a^2 and D3/a^3, which are constant while matter dominates, in equal steps of ln a
 //! by the classical fourth-order Runge-Kutta rule. Start: without radiation, deep in matter domination at a = 1e-10. With it,
-//! deep in radiation domination, y = a/a_eq <= 0.01, on the growing mode D = 1 + (3/2) y (Meszaros 1974) and the D2 that is
-//! regular and zero at y = 0: -(3/2) y - (9/8) y^2 + y^3/16 - ..., that is, no second-order displacement before matter begins to fall.
+//! deep in radiation domination, y = a/a_eq <= 0.01, on the growing mode D = 1 + (3/2) y (Meszaros 1974) and the higher orders that are
+//! regular and zero at y = 0, such as D2 = -(3/2) y - (9/8) y^2 + y^3/16 - ..., that is, no such displacement before matter begins to fall.
 
 use super::background::{Cosmology, EARLIEST, LATEST};
 use crate::status::{Error, Result};
@@ -21,7 +25,7 @@ use crate::status::{Error, Result};
 /// The earliest scale factor that growth is given for; what is left of the decaying modes of the start is below 1e-9 there.
 pub const EARLIEST_GROWTH: f64 = 1e-5;
 
-/// Step in ln a. The relative errors that it leaves today are 1e-10 in D and f, 1e-9 in D2 and f2.
+/// Step in ln a. The relative errors that it leaves today are 1e-10 in D and f, 1e-9 in the higher orders.
 const STEP: f64 = 1.0 / 128.0;
 
 /// Growth functions at one scale factor.
@@ -36,6 +40,18 @@ pub struct Growth {
     pub d2: f64,
     /// dlnD2/dlna.
     pub f2: f64,
+    /// Third order, of the determinant; negative.
+    pub d3a: f64,
+    /// dlnD3a/dlna.
+    pub f3a: f64,
+    /// Third order, of the first and the second together.
+    pub d3b: f64,
+    /// dlnD3b/dlna.
+    pub f3b: f64,
+    /// Third order, transverse.
+    pub d3c: f64,
+    /// dlnD3c/dlna.
+    pub f3c: f64,
 }
 
 /// Growth at scale factor `a`.
@@ -89,6 +105,9 @@ pub fn growth_many(cosmology: &Cosmology, a: &[f64], out: &mut [Growth]) -> Resu
     for growth in out {
         growth.d /= u;
         growth.d2 /= u * u;
+        for d3 in [&mut growth.d3a, &mut growth.d3b, &mut growth.d3c] {
+            *d3 /= u * u * u;
+        }
     }
     Ok(())
 }
@@ -114,9 +133,9 @@ pub fn g_ratio(cosmology: &Cosmology) -> Result<f64> {
     Ok(1.0 / today.0[0])
 }
 
-/// u = D/a, u', v = D2/a^2, v'. Third order joins here: its sources are products of D and D2.
+/// D/a, D2/a^2, and D3a, D3b, D3c over a^3, each followed by its derivative.
 #[derive(Clone, Copy, Debug, Default)]
-struct State([f64; 4]);
+struct State([f64; 10]);
 
 /// The background at one time: 2 + dlnE/dlna and (3/2) Om(a).
 #[derive(Clone, Copy)]
@@ -138,30 +157,46 @@ impl State {
         let equality = cosmology.omega_r / cosmology.omega_m;
         // Below this, radiation is gone at the start; what it changed decays as a^(-5/2).
         if equality < 1e-12 {
-            return (EARLIEST, Self([1.0, 0.0, -3.0 / 7.0, 0.0]));
+            return (
+                EARLIEST,
+                Self([1.0, 0.0, -3.0 / 7.0, 0.0, -1.0 / 3.0, 0.0, 5.0 / 21.0, 0.0, 1.0 / 7.0, 0.0]),
+            );
         }
         let a = EARLIEST.min(0.01 * equality);
         let y = a / equality;
-        // Multiplied by (2/3) a_eq, so that D -> a after equality.
+        // Multiplied by (2/3) a_eq for each order, so that D -> a after equality.
         let unit = equality / 1.5;
-        let (d, d_prime) = ((1.0 + 1.5 * y) * unit, 1.5 * y * unit);
-        // c[n+1] = (s[n] - (2n+3)(n-1) c[n])/(2 (n+1)^2), s = (-3, -9, -27/4): the equation, times 2y(1+y), order by order.
-        let terms = [-1.5 * y, -1.125 * y * y, 0.0625 * y * y * y, -0.035_156_25 * y * y * y * y];
-        let (mut d2, mut d2_prime) = (0.0, 0.0);
-        for (n, term) in terms.into_iter().enumerate() {
-            d2 += term * unit * unit;
-            d2_prime += (n + 1) as f64 * term * unit * unit;
+        let mut state = [0.0; 10];
+        let mut set = |order: i32, at: usize, d: f64, d_prime: f64| {
+            let scale = libm::pow(unit / a, f64::from(order));
+            state[at] = d * scale;
+            state[at + 1] = (d_prime - f64::from(order) * d) * scale;
+        };
+        set(1, 0, 1.0 + 1.5 * y, 1.5 * y);
+        // Sources over (3/2) y, in powers of y: -D^2, -2 D^3, D^3 - D D2, D^3.
+        for (order, at, source, attracted) in [
+            (2, 2, [-1.0, -3.0, -2.25, 0.0], true),
+            (3, 4, [-2.0, -9.0, -13.5, -6.75], true),
+            (3, 6, [1.0, 6.0, 10.125, 5.0], true),
+            (3, 8, [1.0, 4.5, 6.75, 3.375], false),
+        ] {
+            let (d, d_prime) = in_radiation(y, source, attracted);
+            set(order, at, d, d_prime);
         }
-        let (u, v) = (d / a, d2 / (a * a));
-        (a, Self([u, d_prime / a - u, v, d2_prime / (a * a) - 2.0 * v]))
+        (a, Self(state))
     }
 
     fn derivative(self, drive: Drive) -> Self {
-        let Self([u, u1, v, v1]) = self;
+        let Self([u, u1, v, v1, wa, wa1, wb, wb1, wc, wc1]) = self;
         let Drive { friction: q, attraction: m } = drive;
+        let cube = u * u * u;
         let u2 = m * u - q * (u + u1) - u - 2.0 * u1;
         let v2 = m * (v - u * u) - q * (2.0 * v + v1) - 4.0 * (v + v1);
-        Self([u1, u2, v1, v2])
+        let third = |pull: f64, w: f64, w1: f64| m * pull - q * (3.0 * w + w1) - 9.0 * w - 6.0 * w1;
+        let wa2 = third(wa - 2.0 * cube, wa, wa1);
+        let wb2 = third(wb + cube - u * v, wb, wb1);
+        let wc2 = third(cube, wc, wc1);
+        Self([u1, u2, v1, v2, wa1, wa2, wb1, wb2, wc1, wc2])
     }
 
     fn plus(self, h: f64, slope: Self) -> Self {
@@ -180,9 +215,37 @@ impl State {
 
     /// Not yet normalised to D(1) = 1.
     fn growth(self, a: f64) -> Growth {
-        let Self([u, u1, v, v1]) = self;
-        Growth { d: a * u, f: 1.0 + u1 / u, d2: a * a * v, f2: 2.0 + v1 / v }
+        let Self([u, u1, v, v1, wa, wa1, wb, wb1, wc, wc1]) = self;
+        let cube = a * a * a;
+        Growth {
+            d: a * u,
+            f: 1.0 + u1 / u,
+            d2: a * a * v,
+            f2: 2.0 + v1 / v,
+            d3a: cube * wa,
+            f3a: 3.0 + wa1 / wa,
+            d3b: cube * wb,
+            f3b: 3.0 + wb1 / wb,
+            d3c: cube * wc,
+            f3c: 3.0 + wc1 / wc,
+        }
     }
+}
+
+/// A growth function early in radiation domination, zero at y = 0, and its derivative by ln y: the solution of
+/// (1 + y) G'' + (y/2) G' - (3/2) y G = (3/2) y s(y), s = sum of source\[n\] y^n, order by order; without the third term unless `attracted`.
+fn in_radiation(y: f64, source: [f64; 4], attracted: bool) -> (f64, f64) {
+    let (mut value, mut slope) = (0.0, 0.0);
+    let (mut coefficient, mut power) = (0.0, y);
+    for (n, source) in source.into_iter().enumerate() {
+        let n = n as f64;
+        let pull = if attracted { 1.5 } else { 0.0 };
+        coefficient = (1.5 * source - (n * n + 0.5 * n - pull) * coefficient) / ((n + 1.0) * (n + 1.0));
+        value += coefficient * power;
+        slope += (n + 1.0) * coefficient * power;
+        power *= y;
+    }
+    (value, slope)
 }
 
 /// Walks from the start to `last`. For each step `visit` gets its two ends and a function that steps to any a between them.

@@ -29,6 +29,7 @@ pub mod table;
 pub use background::{Cosmology, radiation_density};
 pub use eisenstein_hu::{EisensteinHu, Wiggles};
 pub use growth::{Growth, g_ratio, growth, growth_many};
+pub(crate) use mode_table::mode_power_table;
 pub use mode_table::{alpha_table, mode_table_length, potential_amplitude_table};
 pub use poisson::{Convention, Poisson, alpha_factor, primordial_amplitude};
 pub use power::Linear;

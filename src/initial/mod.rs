@@ -10,6 +10,10 @@ pub mod modes;
 pub mod particles;
 pub mod png;
 pub mod realise;
+pub mod shape;
+mod shape_rows;
+pub mod shifted;
+pub mod third;
 
 #[cfg(test)]
 mod tests;

@@ -154,7 +154,7 @@ fn multiply_row<T: Real, F: Factor, const ADD: bool>(to: &mut [T], from: &[T], n
 }
 
 /// Of `length` modes from z on, in the row (x, y): how many lie inside |n_a| < half.
-fn inside(z: usize, length: usize, [x, y]: [i64; 2], half: usize) -> usize {
+pub(super) fn inside(z: usize, length: usize, [x, y]: [i64; 2], half: usize) -> usize {
     if x.unsigned_abs() as usize >= half || y.unsigned_abs() as usize >= half {
         return 0;
     }
@@ -204,6 +204,20 @@ impl Factor for Scale {
     #[inline(always)]
     fn at(&self, n: [f64; 3]) -> f64 {
         if n == [0.0; 3] { 0.0 } else { self.0 }
+    }
+}
+
+/// f_k <- table(|n|^2) f_k, for modes inside the table.
+pub(crate) struct ByTable<'a>(pub(crate) &'a [f64]);
+
+impl Factor for ByTable<'_> {
+    const IMAGINARY: bool = false;
+
+    #[inline(always)]
+    fn at(&self, n: [f64; 3]) -> f64 {
+        // Blocks of factors reach beyond the last mode of a row, and so beyond the table.
+        let square = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) as usize;
+        self.0.get(square).copied().unwrap_or(0.0)
     }
 }
 

@@ -136,7 +136,7 @@ impl Stepper {
         let mut growth = [Growth::default(); 3];
         growth_many(cosmology, &a, &mut growth)?;
         Ok([0, 1, 2].map(|i| {
-            let Growth { d, f, d2, f2 } = growth[i];
+            let Growth { d, f, d2, f2, .. } = growth[i];
             let rate = a[i] * a[i] * libm::sqrt(cosmology.e_squared(a[i]));
             Epoch { d, d2, velocity: rate * f * d, second_velocity: rate * f2 * d2 }
         }))

@@ -11,7 +11,7 @@ const ALL: [Stepper; 3] = [Stepper::FastPm, Stepper::Leapfrog, Stepper::Cola { e
 
 /// Displacement and canonical velocity of a growing mode: D, D2, G, G2.
 fn mode(cosmology: &Cosmology, a: f64) -> [f64; 4] {
-    let Growth { d, f, d2, f2 } = growth(cosmology, a).unwrap();
+    let Growth { d, f, d2, f2, .. } = growth(cosmology, a).unwrap();
     let rate = a * a * cosmology.expansion(a).unwrap();
     [d, d2, rate * f * d, rate * f2 * d2]
 }
