@@ -83,7 +83,7 @@ static int draw_scheme(const struct universe *universe, double *modes) {
         outcome = power_at(&power, universe, 2.0 * PI / box * sqrt((double)square));
         amplitude[square] = sqrt(power / (box * box * box)) * universe->growth;
     }
-    struct scheme scheme = {n, (size_t)p->n_sample, p->sphere_mode == 1, (int)p->fixed_amplitude, (int)p->phase_flip, (uint64_t)p->seed,
+    struct scheme scheme = {n, (size_t)p->n_sample, p->box, p->sphere_mode == 1, (int)p->fixed_amplitude, (int)p->phase_flip, (uint64_t)p->seed,
                             generator, amplitude};
     if (outcome == 0) outcome = scheme_density(&scheme, modes);
     free(amplitude);
@@ -108,11 +108,10 @@ static int draw_library(const struct universe *universe, double *modes) {
     return 0;
 }
 
-/* Is this mode exactly on the edge of Nsample? There 2LPTic's rounding of k L/(2 pi) decides. */
+/* Is this mode exactly on the edge of a sphere? There 2LPTic's rounding of k L/(2 pi) decides, for each mode. */
 static int is_on_edge(const struct parameters *p, const long number[3]) {
     long most = p->n_sample / 2, square = number[0] * number[0] + number[1] * number[1] + number[2] * number[2];
-    if (p->sphere_mode == 1) return square == most * most;
-    return labs(number[0]) == most || labs(number[1]) == most || labs(number[2]) == most;
+    return p->sphere_mode == 1 && square == most * most;
 }
 
 struct comparison {
@@ -145,7 +144,7 @@ static struct comparison compare(const struct universe *universe, const double *
 
 static int check_modes(const struct universe *universe, const double *library, const double *scheme, const char *name) {
     struct comparison result = compare(universe, library, scheme);
-    int failures = claim(result.wrong == 0, "%s: both draw the same %lu modes, besides %lu on the edge of Nsample", name,
+    int failures = claim(result.wrong == 0, "%s: both draw the same %lu modes, besides %lu on the edge of a sphere", name,
                          (unsigned long)result.modes, (unsigned long)result.edge);
     /*
      * An ulp is 2.2e-16. The phase, up to 2 pi, is rounded to 2 of them, and 2LPTic's pi added to it to flip to 4; sine, cosine and logarithm to 1 each; ln P, up to 20, to 8 of P, so

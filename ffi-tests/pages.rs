@@ -39,7 +39,8 @@ fn patches_in_c_compile() {
     assert_eq!(found.len(), 3, "2LPTic, N-GenIC, f_NL");
     for (i, real) in ["double", "float"].into_iter().enumerate() {
         assert!(found[i].lines().count() < 30, "less than 30 lines");
-        let (includes, code): (Vec<_>, Vec<_>) = found[i].lines().partition(|line| line.starts_with("#include"));
+        let (includes, code): (Vec<_>, Vec<_>) =
+            found[i].lines().partition(|line| line.starts_with("#include"));
         let (includes, code) = (includes.join("\n"), code.join("\n"));
         let source = format!(
             "#include <math.h>\n#include <stdint.h>\n#include <stdlib.h>\n{includes}\n#define REAL {real}\n{GENERATOR}
@@ -50,7 +51,13 @@ fn patches_in_c_compile() {
         );
         compiles("CC", "cc", &["-std=c11"], &format!("patch{i}.c"), &source);
     }
-    compiles("CC", "cc", &["-std=c99", "-pedantic"], "patch_png.c", &format!("#include <fixpair.h>\n{}", found[2]));
+    compiles(
+        "CC",
+        "cc",
+        &["-std=c99", "-pedantic"],
+        "patch_png.c",
+        &format!("#include <fixpair.h>\n{}", found[2]),
+    );
 }
 
 #[test]

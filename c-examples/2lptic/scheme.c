@@ -41,11 +41,12 @@ static long signed_number(size_t index, size_t n) {
     return index < n / 2 ? (long)index : (long)index - (long)n;
 }
 
-/* What Nsample leaves out. */
-static int is_left_out(const struct scheme *scheme, long i, long j, long l) {
-    long most = (long)(scheme->sample / 2);
-    if (scheme->sphere) return i * i + j * j + l * l > most * most;
-    return labs(i) > most || labs(j) > most || l > most;
+/* What Nsample leaves out, compared as 2LPTic compares it: on the very edge its rounding decides. */
+static int is_left_out(const struct scheme *scheme, const long number[3]) {
+    double most = (double)(scheme->sample / 2), box = scheme->box, k[3];
+    for (int axis = 0; axis < 3; axis++) k[axis] = (double)(number[axis] * 2) * PI / box;
+    if (scheme->sphere) return sqrt(k[0] * k[0] + k[1] * k[1] + k[2] * k[2]) * box / (2.0 * PI) > most;
+    return fabs(k[0]) * box / (2.0 * PI) > most || fabs(k[1]) * box / (2.0 * PI) > most || k[2] * box / (2.0 * PI) > most;
 }
 
 static void store(double *modes, size_t n, size_t i, size_t j, size_t l, double real, double imaginary) {
@@ -62,7 +63,7 @@ static void fill_column(const struct scheme *scheme, double *modes, const double
         while (draw == 0.0) draw = *uniforms++;
         if (i == n / 2 || j == n / 2 || (i == 0 && j == 0 && l == 0)) continue;
         long number[3] = {signed_number(i, n), signed_number(j, n), (long)l};
-        if (is_left_out(scheme, number[0], number[1], number[2])) continue;
+        if (is_left_out(scheme, number)) continue;
         /* In the plane l = 0 one of two conjugate columns is drawn, and decides about both. */
         if (l == 0 && (i > n / 2 || (i == 0 && j > n / 2))) continue;
         if (scheme->flip) phase += PI;

@@ -15,6 +15,7 @@ typedef int scheme_generator(double *uniforms, size_t len, uint64_t seed);
 struct scheme {
     size_t n;
     size_t sample; /* Nsample */
+    double box;    /* in the unit of the parameter file: it decides how wavenumbers are rounded */
     int sphere, fixed, flip;
     uint64_t seed;
     scheme_generator *generator;

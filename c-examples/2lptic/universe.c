@@ -7,6 +7,8 @@
 #include "check.h"
 #include "memory.h"
 
+#define PI 3.14159265358979323846
+
 /* Of the fit of Eisenstein & Hu in those codes, and the baryons that it takes where a file has none. */
 #define T_CMB 2.728
 #define BARYONS 0.04
@@ -23,6 +25,18 @@ static void describe_cosmology(struct fixpair_cosmology *cosmology, const struct
     cosmology->t_cmb = T_CMB;
 }
 
+/*
+ * Twice the largest component that 2LPTic draws. It compares k L/(2 pi) with Nsample/2 as they are rounded, which in a cube puts all modes on the edge on one side of
+ * it or the other, as the box will have it. (In a sphere each has a rounding of its own; there all are drawn here.)
+ */
+static uint32_t sample_of(const struct parameters *parameters) {
+    long most = parameters->n_sample / 2;
+    double k = (double)(most * 2) * PI / parameters->box;
+    if (parameters->sphere_mode != 1 && k * parameters->box / (2.0 * PI) > (double)most) most -= 1;
+    /* 0 would mean all. */
+    return most > 0 ? (uint32_t)(2 * most) : 1;
+}
+
 static int describe(struct universe *universe) {
     const struct parameters *parameters = universe->parameters;
     struct fixpair_conditions *conditions = &universe->conditions;
@@ -31,7 +45,7 @@ static int describe(struct universe *universe) {
     TRY(fixpair_conditions_init(conditions, (uint64_t)parameters->seed));
     conditions->realisation.scheme = FIXPAIR_SCHEME_NGENIC;
     conditions->realisation.selection = parameters->sphere_mode == 1 ? FIXPAIR_SELECTION_SPHERE : FIXPAIR_SELECTION_CUBE;
-    conditions->realisation.sample = (uint32_t)parameters->n_sample;
+    conditions->realisation.sample = sample_of(parameters);
     conditions->realisation.amplitude = parameters->fixed_amplitude ? FIXPAIR_AMPLITUDE_FIXED : FIXPAIR_AMPLITUDE_NORMAL;
     conditions->realisation.phase = parameters->phase_flip ? FIXPAIR_PHASE_INVERTED : FIXPAIR_PHASE_ORIGINAL;
     conditions->realisation.nyquist = FIXPAIR_NYQUIST_ZERO;
