@@ -1,17 +1,17 @@
 /*
- * Initial conditions from a parameter file of 2LPTic, of its versions with primordial non-Gaussianity, or of N-GenIC: the same file in, the
- * same universe in the same Gadget files out, and Fixed, Paired and Matched ones.
+ * Initial conditions from a parameter file of 2LPTic, of its versions with primordial non-Gaussianity, or of N-GenIC: the same
+ * file in, the same universe in the same Gadget files out, and Fixed, Paired and Matched ones.
  *
  *     2lptic_fixpair [flags] PARAMETERFILE
  *
- * Keys beyond those of 2LPTic, all optional: FixedAmplitude, PhaseFlip (0 or 1), Fnl, WhichTransfer, FileWithInputTransfer. What those codes
- * decide when they are compiled, flags do:
+ * Keys beyond those of 2LPTic, all optional: FixedAmplitude, PhaseFlip (0 or 1), Fnl, WhichTransfer, FileWithInputTransfer. What
+ * those codes decide when they are compiled, flags do:
  *
  *     --shape NAME    of Fnl: local (the default), equilateral, orthogonal, orthogonal-lss, folded
  *     --zeldovich     first order alone (ONLY_ZA)
  *     --third         third order as well
  *     --dealias       products free of aliasing, which those codes let alias
- *     --files N       as many files as N MPI processes would write; else NumFilesWrittenInParallel, the fewest with which 2LPTic would run
+ *     --files N       as many files as N MPI processes would write; else NumFilesWrittenInParallel, the fewest that 2LPTic runs with
  *     --long-ids      ids of 8 bytes even where 4 suffice
  *     --threads N     1 by default; any number gives the same bits
  *
@@ -104,7 +104,8 @@ static int read_options(struct options *options, int argc, char **argv) {
         i += taken;
     }
     if (options->path != NULL) return 0;
-    fprintf(stderr, "usage: %s [--shape NAME] [--zeldovich|--third] [--dealias] [--files N] [--long-ids] [--threads N] PARAMETERFILE\n", argv[0]);
+    fprintf(stderr, "usage: %s [--shape NAME] [--zeldovich|--third] [--dealias] [--files N] [--long-ids] [--threads N] PARAMETERFILE\n",
+            argv[0]);
     return 1;
 }
 
@@ -116,9 +117,10 @@ static void report(const struct universe *universe, size_t files) {
         moved -= box * floor(moved / box + 0.5);
         square += moved * moved;
     }
-    printf("%s/%s: %lu particles in %lu file%s, z = %g, moved by %.5g Mpc/h r.m.s.; %s amplitudes, %s phases, Fnl = %g\n", p->output_dir,
-           p->file_base, (unsigned long)universe->glass.count, (unsigned long)files, files == 1 ? "" : "s at most", p->redshift,
-           sqrt(square / (double)universe->glass.count), p->fixed_amplitude ? "fixed" : "normal", p->phase_flip ? "inverted" : "original", p->f_nl);
+    printf("%s/%s: %lu particles in %lu file%s, z = %g, moved by %.5g Mpc/h r.m.s.; %s amplitudes, %s phases, Fnl = %g\n",
+           p->output_dir, p->file_base, (unsigned long)universe->glass.count, (unsigned long)files, files == 1 ? "" : "s at most",
+           p->redshift, sqrt(square / (double)universe->glass.count), p->fixed_amplitude ? "fixed" : "normal",
+           p->phase_flip ? "inverted" : "original", p->f_nl);
 }
 
 static int run(const struct options *options, const struct parameters *parameters, struct universe *universe) {

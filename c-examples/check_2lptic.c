@@ -1,9 +1,11 @@
 /*
- * The universes of 2lptic_fixpair against the scheme of 2LPTic, drawn mode by mode without the library, and what must hold among them.
+ * The universes of 2lptic_fixpair against the scheme of 2LPTic, drawn mode by mode without the library, and what must hold among
+ * them.
  *
  *     check_2lptic TABLE FOLDER PARAMETERFILE...
  *
- * Writes the files that the parameter files of 2lptic/ name into FOLDER first. With GSL, which 2LPTic draws with, ranlxd1 is GSL's own.
+ * Writes the files that the parameter files of 2lptic/ name into FOLDER first. Of the first file broken ones are made, which have
+ * to be refused, of the last, which has Fnl, pairs. With GSL, which 2LPTic draws with, ranlxd1 is GSL's own.
  */
 
 /* mkdir */
@@ -83,8 +85,8 @@ static int draw_scheme(const struct universe *universe, double *modes) {
         outcome = power_at(&power, universe, 2.0 * PI / box * sqrt((double)square));
         amplitude[square] = sqrt(power / (box * box * box)) * universe->growth;
     }
-    struct scheme scheme = {n, (size_t)p->n_sample, p->box, p->sphere_mode == 1, (int)p->fixed_amplitude, (int)p->phase_flip, (uint64_t)p->seed,
-                            generator, amplitude};
+    struct scheme scheme = {n, (size_t)p->n_sample, p->box, p->sphere_mode == 1, (int)p->fixed_amplitude, (int)p->phase_flip,
+                            (uint64_t)p->seed, generator, amplitude};
     if (outcome == 0) outcome = scheme_density(&scheme, modes);
     free(amplitude);
     return outcome;
@@ -97,7 +99,10 @@ static int draw_library(const struct universe *universe, double *modes) {
     size_t length, n = brick->n, reals = universe->fft.hook.length;
     TRY(fixpair_mode_table_length(&length, n));
     double *table = memory_take_doubles(length);
-    int32_t status = table == NULL ? 1 : fixpair_potential_amplitude_table(table, length, n, c->box_size, &c->cosmology, &c->linear, c->convention, NULL);
+    int32_t status = table == NULL;
+    if (status == 0) {
+        status = fixpair_potential_amplitude_table(table, length, n, c->box_size, &c->cosmology, &c->linear, c->convention, NULL);
+    }
     if (status == 0) status = fixpair_white_modes_f64(modes, reals, brick, &c->realisation, table, length, NULL);
     if (status == 0) {
         status = fixpair_alpha_table(table, length, n, c->box_size, &c->cosmology, &c->linear, c->redshift, c->convention, NULL);
@@ -147,8 +152,8 @@ static int check_modes(const struct universe *universe, const double *library, c
     int failures = claim(result.wrong == 0, "%s: both draw the same %lu modes, besides %lu on the edge of a sphere", name,
                          (unsigned long)result.modes, (unsigned long)result.edge);
     /*
-     * An ulp is 2.2e-16. The phase, up to 2 pi, is rounded to 2 of them, and 2LPTic's pi added to it to flip to 4; sine, cosine and logarithm to 1 each; ln P, up to 20, to 8 of P, so
-     * to 4 of its root, and once more as T of alpha, and back.
+     * An ulp is 2.2e-16. The phase, up to 2 pi, is rounded to 2 of them, and 2LPTic's pi added to it to flip to 4; sine, cosine
+     * and logarithm to 1 each; ln P, up to 20, to 8 of P, so to 4 of its root, and once more as T of alpha, and back.
      */
     return failures + claim(result.worst < 2e-15 + 2e-15, "%s: a mode differs by %.1e of itself at most", name, result.worst);
 }
@@ -183,7 +188,8 @@ static void interpolate(double psi[3], const struct universe *universe, const do
 
 /* Some particles at first order, against sums over all modes. */
 static int check_particles(const struct universe *universe, const double *modes, const char *name) {
-    double box = universe->conditions.box_size, a = 1.0 / (1.0 + universe->conditions.redshift), e, worst = 0.0, fastest = 0.0, largest = 0.0;
+    double box = universe->conditions.box_size, a = 1.0 / (1.0 + universe->conditions.redshift), e;
+    double worst = 0.0, fastest = 0.0, largest = 0.0;
     struct fixpair_growth growth;
     TRY(fixpair_expansion(&e, &a, 1, &universe->conditions.cosmology));
     TRY(fixpair_growth_factors(&growth, &a, 1, &universe->conditions.cosmology));
@@ -192,7 +198,8 @@ static int check_particles(const struct universe *universe, const double *modes,
         double psi[3];
         interpolate(psi, universe, modes, particle);
         for (size_t axis = 0; axis < 3; axis++) {
-            double moved = wrapped(universe->position[3 * particle + axis] - box * glass_coordinate(&universe->glass, particle, axis), box);
+            double stood = box * glass_coordinate(&universe->glass, particle, axis);
+            double moved = wrapped(universe->position[3 * particle + axis] - stood, box);
             double rate = universe->velocity[3 * particle + axis] / (100.0 * a * e * growth.f);
             worst = fmax(worst, fabs(moved - psi[axis]));
             fastest = fmax(fastest, fabs(rate - psi[axis]));
@@ -200,8 +207,9 @@ static int check_particles(const struct universe *universe, const double *modes,
         }
     }
     /* Positions are rounded to 1e-16 of the box; sums of 1e4 terms of 1e-2 of psi to 1e-14 of it, and velocities with them. */
-    int failures = claim(worst < 1e-15 * box + 1e-12 * largest, "%s: %d particles, moved by up to %.3g Mpc/h, are where a sum over modes has them, to %.1e",
-                         name, (int)PARTICLES, largest, worst);
+    int failures = claim(worst < 1e-15 * box + 1e-12 * largest,
+                         "%s: %d particles, moved by up to %.3g Mpc/h, are where a sum over modes has them, to %.1e", name,
+                         (int)PARTICLES, largest, worst);
     return failures + claim(fastest < 1e-12 * largest, "%s: and as fast, to %.1e of it", name, fastest / largest);
 }
 
@@ -218,7 +226,8 @@ static int check_file(const char *path, int *failures) {
     int broken = scheme == NULL || universe_open(&universe, &parameters, &zeldovich) != 0;
     if (!broken) {
         library = memory_take_doubles(universe.fft.hook.length);
-        broken = library == NULL || draw_scheme(&universe, scheme) != 0 || draw_library(&universe, library) != 0 || universe_make(&universe) != 0;
+        broken = library == NULL || draw_scheme(&universe, scheme) != 0 || draw_library(&universe, library) != 0 ||
+                 universe_make(&universe) != 0;
     }
     if (!broken) {
         double heath = growth_integral(&parameters, 1.0 / (1.0 + parameters.redshift)) / growth_integral(&parameters, 1.0), sigma8;
@@ -241,7 +250,9 @@ static int check_file(const char *path, int *failures) {
 static double *displacements(const struct parameters *parameters, const struct choices *choices) {
     struct universe universe;
     double *moved = NULL;
-    if (universe_open(&universe, parameters, choices) == 0 && universe_make(&universe) == 0) moved = memory_take_doubles(3 * universe.glass.count);
+    if (universe_open(&universe, parameters, choices) == 0 && universe_make(&universe) == 0) {
+        moved = memory_take_doubles(3 * universe.glass.count);
+    }
     for (size_t i = 0; moved != NULL && i < 3 * universe.glass.count; i++) {
         double box = universe.conditions.box_size;
         moved[i] = wrapped(universe.position[i] - box * glass_coordinate(&universe.glass, i / 3, i % 3), box);
@@ -285,16 +296,16 @@ static int check_family(const char *path, int *failures) {
     }
     if (!broken) {
         const char *name = parameters.file_base;
-        double *pair[] = {d[FIRST], d[FIRST_INVERTED]}, *even[] = {d[SECOND], d[SECOND_INVERTED], d[FIRST]};
-        double *even_first[] = {d[FIRST], d[SECOND], d[SECOND_INVERTED]}, *png[] = {d[FIRST], d[PLUS], d[MINUS]};
+        double *pair[] = {d[FIRST], d[FIRST_INVERTED]}, *second[] = {d[FIRST], d[SECOND], d[SECOND_INVERTED]};
+        double *png[] = {d[FIRST], d[PLUS], d[MINUS]};
         double *png_pair[] = {d[PLUS], d[PLUS_INVERTED], d[FIRST]};
-        (void)even;
         /* Positions are rounded to 1e-16 of a box of 1000 Mpc/h, and displacements are 0.1 Mpc/h. */
         double odd = combined(pair, (const double[]){1.0, 1.0}, 2, count);
         *failures += claim(odd < 1e-11, "%s: to first order the mean of a pair does not move, to %.1e", name, odd);
-        double mean = combined(even_first, (const double[]){0.0, 0.5, 0.5}, 3, count);
-        double left = combined(even_first, (const double[]){1.0, -0.5, 0.5}, 3, count);
-        *failures += claim(mean > 1e-5 && left < 1e-11, "%s: to second order it moves by %.1e, and half the difference is first order, to %.1e: no odd part",
+        double mean = combined(second, (const double[]){0.0, 0.5, 0.5}, 3, count);
+        double left = combined(second, (const double[]){1.0, -0.5, 0.5}, 3, count);
+        *failures += claim(mean > 1e-5 && left < 1e-11,
+                           "%s: to second order it moves by %.1e, and half the difference is first order, to %.1e: no odd part in the mean",
                            name, mean, left);
         double change = combined(png, (const double[]){-1.0, 1.0, 0.0}, 3, count);
         double sum = combined(png, (const double[]){-2.0, 1.0, 1.0}, 3, count);
@@ -347,7 +358,7 @@ static int check_refusals(const char *path, const char *folder, int *failures) {
 int main(int argc, char **argv) {
     int failures = 0, broken = 0;
     if (argc < 5) {
-        fprintf(stderr, "usage: %s TABLE FOLDER PARAMETERFILE PARAMETERFILE...; of the first refusals are made, of the last pairs\n", argv[0]);
+        fprintf(stderr, "usage: %s TABLE FOLDER PARAMETERFILE PARAMETERFILE...\n", argv[0]);
         return EXIT_FAILURE;
     }
     if (mkdir(argv[2], 0777) != 0 && errno != EEXIST) {

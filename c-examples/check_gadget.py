@@ -69,7 +69,8 @@ def files(path):
 class Snapshot:
     """Positions in Mpc/h, displacements in Mpc/h from where particles stood, peculiar velocities in km/s, all in order of id.
 
-    Particles stood at the corners of a lattice, or in `tiles`^3 copies of `tile`. Masses may be off by the constants of Newton in use, 3e-4.
+    Particles stood at the corners of a lattice, or in `tiles`^3 copies of `tile`. Masses may be off by `mass_error`: G has
+    more than one value in use.
     """
 
     def __init__(self, path, tile=None, tiles=0, mass_error=1e-12):

@@ -1,6 +1,7 @@
 /*
- * Where particles are before they are displaced: the positions of a Gadget file, tiled GlassTileFac^3 times, or one particle a tile at its
- * corner. Particles come in the order of their ids, which begin at 1: tiles with z fastest, and in each the particles of the file.
+ * Where particles are before they are displaced: the positions of a Gadget file, tiled GlassTileFac^3 times, or one particle a
+ * tile at its corner. Particles come in the order of their ids, which begin at 1: tiles with z fastest, and in each the particles
+ * of the file.
  */
 
 #ifndef GLASS_H
@@ -16,8 +17,9 @@ struct glass {
 };
 
 /*
- * Reads the particles of all types in a file of Gadget format 1, or in path.0, path.1 ... where there is path.0; no file for an empty path.
- * Returns 0, or 1 after saying what is wrong; in both cases glass_close gives the memory back, as it does for a struct of zeros.
+ * Reads the particles of all types in a file of Gadget format 1, or in path.0, path.1 ... where there is path.0; no file for an
+ * empty path. Returns 0, or 1 after saying what is wrong; in both cases glass_close gives the memory back, as it does for a
+ * struct of zeros.
  */
 int glass_open(struct glass *glass, const char *path, size_t tiles);
 

@@ -147,10 +147,13 @@ static int check(const struct parameters *p, const char *path) {
         {!(p->input_spectrum_unit_length > 0.0), "InputSpectrum_UnitLength_in_cm", "must be positive"},
         {!(p->sigma8 > 0.0), "Sigma8", "must be positive"},
         {!(p->shape_gamma > 0.0), "ShapeGamma", "must be positive"},
-        {p->which_spectrum == SPECTRUM_TABLE && p->spectrum_file[0] == '\0', "FileWithInputSpectrum", "is missing, where WhichSpectrum is 2"},
-        {p->which_spectrum != SPECTRUM_TRANSFER && p->which_transfer > TRANSFER_NONE, "WhichTransfer", "must be 0 unless WhichSpectrum is 0"},
+        {p->which_spectrum == SPECTRUM_TABLE && p->spectrum_file[0] == '\0', "FileWithInputSpectrum",
+         "is missing, where WhichSpectrum is 2"},
+        {p->which_spectrum != SPECTRUM_TRANSFER && p->which_transfer > TRANSFER_NONE, "WhichTransfer",
+         "must be 0 unless WhichSpectrum is 0"},
         {p->which_transfer > TRANSFER_TABLE, "WhichTransfer", "must be 1 (Eisenstein & Hu) or 2 (table)"},
-        {p->which_transfer == TRANSFER_TABLE && p->transfer_file[0] == '\0', "FileWithInputTransfer", "is missing, where WhichTransfer is 2"},
+        {p->which_transfer == TRANSFER_TABLE && p->transfer_file[0] == '\0', "FileWithInputTransfer",
+         "is missing, where WhichTransfer is 2"},
         {p->renormalise_input_spectrum == 0 && p->which_spectrum != SPECTRUM_TABLE, "ReNormalizeInputSpectrum",
          "may be 0 only with a table of the spectrum, WhichSpectrum 2"},
         {p->f_nl != 0.0 && p->which_spectrum == SPECTRUM_TABLE, "Fnl",
@@ -186,11 +189,12 @@ int parameters_read(struct parameters *parameters, const char *path) {
     if (outcome != 0) return 1;
 
     /* Without WhichTransfer this is a file of plain 2LPTic, whose other numbers all mean the fit by Gamma. */
-    if (parameters->which_spectrum == SPECTRUM_TRANSFER && parameters->which_transfer < 0) parameters->which_spectrum = SPECTRUM_GAMMA;
-    if (parameters->which_spectrum < SPECTRUM_TRANSFER || parameters->which_spectrum > SPECTRUM_GAMMA) {
+    int plain = parameters->which_transfer < 0;
+    if (parameters->which_spectrum < SPECTRUM_TRANSFER || parameters->which_spectrum > SPECTRUM_GAMMA ||
+        (parameters->which_spectrum == SPECTRUM_TRANSFER && plain)) {
         parameters->which_spectrum = SPECTRUM_GAMMA;
     }
-    if (parameters->which_transfer < 0) parameters->which_transfer = TRANSFER_NONE;
+    if (plain) parameters->which_transfer = TRANSFER_NONE;
     if (parameters->which_spectrum == SPECTRUM_TRANSFER && parameters->which_transfer == TRANSFER_NONE) {
         return complain(path, "WhichTransfer", "must be 1 (Eisenstein & Hu) or 2 (table) where WhichSpectrum is 0");
     }

@@ -1,9 +1,9 @@
 /*
- * Parameter files of 2LPTic, of its versions with primordial non-Gaussianity, and of N-GenIC: a key and a value a line, the rest of the line
- * and lines that begin with % or # being comments.
+ * Parameter files of 2LPTic, of its versions with primordial non-Gaussianity, and of N-GenIC: a key and a value a line, the rest
+ * of the line and lines that begin with % or # being comments.
  *
- * A key that is not known here, or is there twice, is refused, and so is a file that lacks one that is needed. What the program cannot
- * do, warm dark matter and a second species, is refused where it is asked for.
+ * A key that is not known here, or is there twice, is refused, and so is a file that lacks one that is needed. What the program
+ * cannot do, warm dark matter and a second species, is refused where it is asked for.
  */
 
 #ifndef PARAMETERS_H

@@ -1,6 +1,6 @@
 /*
- * The modes of 2LPTic, N-GenIC and their kin, drawn mode by mode as those codes do it, with nothing of the library but, if asked for, its
- * ranlxd1. Slow, and there to be compared with.
+ * The modes of 2LPTic, N-GenIC and their kin, drawn mode by mode as those codes do it, with nothing of the library but, if asked
+ * for, its ranlxd1. Slow, and there to be compared with.
  */
 
 #ifndef SCHEME_H
@@ -23,14 +23,14 @@ struct scheme {
 };
 
 /*
- * Modes of the linear density, as (re, im) at 2 ((i n + j)(n/2 + 1) + l): n^2 (n + 2) numbers. Those that the codes leave out are 0.
- * Returns 0, or 1 after saying what is wrong.
+ * Modes of the linear density, as (re, im) at 2 ((i n + j)(n/2 + 1) + l): n^2 (n + 2) numbers. Those that the codes leave out are
+ * 0. Returns 0, or 1 after saying what is wrong.
  */
 int scheme_density(const struct scheme *scheme, double *modes);
 
 /*
- * Zel'dovich displacement at a corner of the mesh, cell by cell: sum over both members of each pair of i k/k^2 delta_k exp(i k.q), by adding
- * them all up.
+ * Zel'dovich displacement at a corner of the mesh, cell by cell: sum over both members of each pair of i k/k^2 delta_k exp(i
+ * k.q), by adding them all up.
  */
 void scheme_displacement(double psi[3], const double *modes, size_t n, double box, const size_t corner[3]);
 

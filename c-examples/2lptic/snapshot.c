@@ -62,14 +62,17 @@ static void make_header(struct gadget_header *header, const struct parameters *p
     header->hubble_param = p->hubble_param;
 }
 
-static int write_share(const struct parameters *p, struct gadget_header *header, const struct share *share, const char *path, size_t id_bytes) {
+static int write_share(const struct parameters *p, struct gadget_header *header, const struct share *share, const char *path,
+                       size_t id_bytes) {
     struct gadget_particles particles = {share->count, share->position, share->velocity, share->id};
+    double length = CM_PER_MPC / p->unit_length, velocity = 1e5 / p->unit_velocity / sqrt(header->time);
     header->npart[HALO] = (uint32_t)share->count;
-    return gadget_write_file(path, header, &particles, CM_PER_MPC / p->unit_length, 1e5 / p->unit_velocity / sqrt(header->time), id_bytes);
+    return gadget_write_file(path, header, &particles, length, velocity, id_bytes);
 }
 
 /* The particles from which those of a file come: whole planes of tiles, and one more on either side for what rounds across. */
-static void range(const struct parameters *parameters, const struct glass *glass, size_t file, size_t files, size_t *first, size_t *last) {
+static void range(const struct parameters *parameters, const struct glass *glass, size_t file, size_t files, size_t *first,
+                  size_t *last) {
     size_t n = (size_t)parameters->n_mesh, planes = (n + files - 1) / files, plane = glass->count / glass->tiles;
     size_t low = file * planes * glass->tiles / n, high = (file + 1) * planes * glass->tiles / n + 2;
     *first = (low > 0 ? low - 1 : 0) * plane;

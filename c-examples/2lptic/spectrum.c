@@ -112,7 +112,9 @@ static double variance(const struct spectrum *spectrum, double low, double high)
 
 static void add_rows(struct spectrum *spectrum, double from, double to, int with_end) {
     int count = (int)ceil(ROWS_PER_DECADE * log10(to / from));
-    for (int i = 0; i < count + with_end; i++) spectrum->k[spectrum->rows++] = i == count ? to : from * pow(to / from, (double)i / count);
+    for (int i = 0; i < count + with_end; i++) {
+        spectrum->k[spectrum->rows++] = i == count ? to : from * pow(to / from, (double)i / count);
+    }
 }
 
 /* Rows from `low` to the fundamental mode, at each mode of the mesh, and on to `high`. */
@@ -166,7 +168,8 @@ int spectrum_open(struct spectrum *spectrum, const struct parameters *parameters
 
     double most = fmin(high, 500.0 / 8.0), square = variance(spectrum, low, most);
     if (low >= most || !(square > 0.0) || !isfinite(square)) return complain(path, "has no finite Sigma8");
-    spectrum->factor = parameters->renormalise_input_spectrum ? parameters->sigma8 * parameters->sigma8 / square : 1.0 / (growth * growth);
+    spectrum->factor = parameters->sigma8 * parameters->sigma8 / square;
+    if (!parameters->renormalise_input_spectrum) spectrum->factor = 1.0 / (growth * growth);
     return sample(spectrum, low, high);
 }
 

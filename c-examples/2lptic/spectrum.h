@@ -7,11 +7,11 @@
  *   2               a table of log10 k and log10 Delta^2, Delta^2 = k^3 P/(2 pi^2), times k^(n - 1)
  *   others          k^n T^2 with the fit of Efstathiou, Bond & White (1992), shape parameter Gamma
  *
- * k of tables is in h over InputSpectrum_UnitLength_in_cm. Between rows logarithms are interpolated linearly, and all are normalised to Sigma8,
- * unless ReNormalizeInputSpectrum is 0: then the table is P at the starting redshift.
+ * k of tables is in h over InputSpectrum_UnitLength_in_cm. Between rows logarithms are interpolated linearly, and all are
+ * normalised to Sigma8, unless ReNormalizeInputSpectrum is 0: then the table is P at the starting redshift.
  *
- * The library interpolates tables by cubics. It is given rows at the very wavenumbers of the mesh, so that each mode has the power that those
- * codes give it; rows between and beyond serve what else needs a spectrum.
+ * The library interpolates tables by cubics. It is given rows at the very wavenumbers of the mesh, so that each mode has the
+ * power that those codes give it; rows between and beyond serve what else needs a spectrum.
  */
 
 #ifndef SPECTRUM_H
@@ -32,8 +32,8 @@ struct spectrum {
 };
 
 /*
- * Reads, normalises and samples a spectrum. `growth` is D of the starting redshift. Returns 0, or 1 after saying what is wrong; in both cases
- * spectrum_close gives the memory back, as it does for a struct of zeros.
+ * Reads, normalises and samples a spectrum. `growth` is D of the starting redshift. Returns 0, or 1 after saying what is wrong;
+ * in both cases spectrum_close gives the memory back, as it does for a struct of zeros.
  */
 int spectrum_open(struct spectrum *spectrum, const struct parameters *parameters, double growth);
 

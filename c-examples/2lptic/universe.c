@@ -26,8 +26,9 @@ static void describe_cosmology(struct fixpair_cosmology *cosmology, const struct
 }
 
 /*
- * Twice the largest component that 2LPTic draws. It compares k L/(2 pi) with Nsample/2 as they are rounded, which in a cube puts all modes on the edge on one side of
- * it or the other, as the box will have it. (In a sphere each has a rounding of its own; there all are drawn here.)
+ * Twice the largest component that 2LPTic draws. It compares k L/(2 pi) with Nsample/2 as they are rounded, which in a cube puts
+ * all modes on the edge on one side of it or the other, as the box will have it. (In a sphere each has a rounding of its own;
+ * there all are drawn here.)
  */
 static uint32_t sample_of(const struct parameters *parameters) {
     long most = parameters->n_sample / 2;
@@ -68,7 +69,7 @@ static int describe(struct universe *universe) {
 static int check_side(size_t n) {
     size_t next = fixpair_fft_next_side(n);
     if (next == n) return 0;
-    fprintf(stderr, "Nmesh: %lu has a prime factor above 7, which the built-in transform lacks; take %lu, or link a transform of your own\n",
+    fprintf(stderr, "Nmesh: %lu has a prime factor above 7, which the built-in transform lacks; the next that has none is %lu\n",
             (unsigned long)n, (unsigned long)next);
     return 1;
 }
@@ -97,8 +98,8 @@ static int make_on_mesh(struct universe *universe, const struct fixpair_componen
     TRY(fixpair_initial_conditions_scratch_f64(&layout, &universe->conditions, &universe->fft.hook, fine));
     void *scratch = memory_take(layout);
     if (scratch == NULL) return 1;
-    fixpair_status_t status = fixpair_initial_conditions_f64(x, v, &universe->conditions, &universe->fft.hook, fine, scratch, layout.size,
-                                                             &universe->exec);
+    fixpair_status_t status = fixpair_initial_conditions_f64(x, v, &universe->conditions, &universe->fft.hook, fine, scratch,
+                                                             layout.size, &universe->exec);
     free(scratch);
     TRY(status);
     return 0;
@@ -117,8 +118,8 @@ static int make_anywhere(struct universe *universe, const struct fixpair_compone
     fixpair_status_t status = fixpair_initial_conditions_at_scratch_f64(&layout, &universe->conditions, &universe->fft.hook, fine);
     void *scratch = status == 0 ? memory_take(layout) : NULL;
     if (scratch != NULL) {
-        status = fixpair_initial_conditions_at_f64(x, v, &glass, &universe->conditions, &universe->fft.hook, fine, scratch, layout.size,
-                                                   &universe->exec);
+        status = fixpair_initial_conditions_at_f64(x, v, &glass, &universe->conditions, &universe->fft.hook, fine, scratch,
+                                                   layout.size, &universe->exec);
     }
     free(before);
     free(scratch);

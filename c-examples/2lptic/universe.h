@@ -36,8 +36,8 @@ struct universe {
 };
 
 /*
- * Reads what the parameters name, and makes ready; no particles yet. The parameters must stay. Returns 0, or 1 after saying what is wrong;
- * in both cases universe_close gives the memory back, as it does for a struct of zeros.
+ * Reads what the parameters name, and makes ready; no particles yet. The parameters must stay. Returns 0, or 1 after saying what
+ * is wrong; in both cases universe_close gives the memory back, as it does for a struct of zeros.
  */
 int universe_open(struct universe *universe, const struct parameters *parameters, const struct choices *choices);
 

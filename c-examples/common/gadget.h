@@ -1,8 +1,9 @@
 /*
  * Gadget-2 files of format 1: dark-matter particles of one mass, type 1 (the "halo" slot), in one file.
  *
- * A file is four records, each between two copies of its length in bytes (uint32): the header of 256 bytes, then for all particles
- * positions (3 floats), velocities (3 floats), ids (4 or 8 bytes). Byte order is the machine's; readers look at the first four bytes.
+ * A file is four records, each between two copies of its length in bytes (uint32): the header of 256 bytes, then for all
+ * particles positions (3 floats), velocities (3 floats), ids (4 or 8 bytes). Byte order is the machine's; readers look at the
+ * first four bytes.
  *
  * Units: masses 1e10 Msun/h; velocities the peculiar one over sqrt(a), km/s; lengths kpc/h, the unit of Gadget's own examples
  * and what readers assume who do not ask. Who runs Gadget with UnitLength_in_cm = 3.085678e24 takes GADGET_MPC.
@@ -77,8 +78,8 @@ int gadget_write(const char *path, const struct gadget_universe *universe, const
                  size_t id_bytes);
 
 /*
- * Writes a file of any units, one of a snapshot of several too: the header as it is, positions times `length`, at or beyond header->box_size
- * brought to 0, and velocities times `velocity`. The same otherwise.
+ * Writes a file of any units, one of a snapshot of several too: the header as it is, positions times `length`, at or beyond
+ * header->box_size brought to 0, and velocities times `velocity`. The same otherwise.
  */
 int gadget_write_file(const char *path, const struct gadget_header *header, const struct gadget_particles *particles, double length,
                       double velocity, size_t id_bytes);

@@ -1,7 +1,9 @@
-! What of include/fixpair.h a Fortran host needs to make initial conditions, by iso_c_binding. The header is the manual; names are its own.
+! What of include/fixpair.h a Fortran host needs to make initial conditions, by iso_c_binding. The header is the manual; names are
+! its own.
 !
-! Structs that C grows begin with struct_size, which their _init fills in: a library with other members refuses this module's
-! (FIXPAIR_ERROR_VERSION), and fixpair_matches says so beforehand. Pointers are type(c_ptr): c_loc of an array that has target, or c_null_ptr.
+! Structs that may grow begin with struct_size, which their _init fills in: a library with other members refuses this module's
+! (FIXPAIR_ERROR_VERSION), and fixpair_matches says so beforehand. Pointers are type(c_ptr): c_loc of an array that has target, or
+! c_null_ptr.
 module fixpair
   use, intrinsic :: iso_c_binding
   implicit none

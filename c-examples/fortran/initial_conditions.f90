@@ -1,4 +1,5 @@
-! A Fixed pair of initial conditions with f_NL from Fortran, in the host's own arrays x(3, particles) and v(3, particles), and what must hold of it.
+! A Fixed pair of initial conditions, and one with f_NL, from Fortran in the host's own arrays x(3, particles) and v(3, particles),
+! and what must hold of them.
 program initial_conditions
   use fixpair
   implicit none
