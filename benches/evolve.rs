@@ -13,6 +13,7 @@ use fixpair::initial::conditions::{
 };
 use fixpair::initial::particles::Components;
 use fixpair::initial::png::Local;
+use fixpair::initial::shape::Shape;
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::Realisation;
 use fixpair::pm::evolve::{Epoch, Gravity, Workshop};
@@ -72,6 +73,8 @@ impl Job {
             redshift: 9.0,
             box_size: self.particles as f64,
             local: Local::default(),
+            shape: Shape::Local.rows(),
+            species: None,
             convention: Convention::Cmb,
             order: Order::Second,
         }
@@ -82,7 +85,7 @@ impl Job {
         let (conditions, count) = (self.conditions(), 3 * self.particles.pow(3));
         let (mut x, mut u) = (vec![T::ZERO; count], vec![T::ZERO; count]);
         with_transform::<T>(self.particles, |fft| {
-            let layout = initial_conditions_scratch(Order::Second, &*fft, None).expect("fits");
+            let layout = initial_conditions_scratch(Order::Second.into(), &*fft, None).expect("fits");
             let mut scratch = Memory::new(layout);
             let position = &mut Components::triples(&mut x).expect("triples");
             let velocity = &mut Components::triples(&mut u).expect("triples");

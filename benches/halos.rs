@@ -21,6 +21,7 @@ use fixpair::initial::conditions::{
 };
 use fixpair::initial::particles::Components;
 use fixpair::initial::png::Local;
+use fixpair::initial::shape::Shape;
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::Realisation;
 use fixpair::pm::Positions;
@@ -57,6 +58,8 @@ fn linear() -> Vec<f64> {
         redshift: 0.0,
         box_size: BOX_SIZE,
         local: Local { f_nl: 0.0, g_nl: 0.0 },
+        shape: Shape::Local.rows(),
+        species: None,
         convention: Convention::Cmb,
         order: Order::First,
     };
@@ -66,7 +69,7 @@ fn linear() -> Vec<f64> {
     let cells = Brick::whole_padded(N, Space::Configuration, recommended_padding::<f64>(N)).unwrap();
     let mut fft = Transform::new(&tables, cells, work.bytes(), &Serial).unwrap();
     let (mut x, mut v) = (vec![0.0; 3 * N * N * N], vec![0.0; 3 * N * N * N]);
-    let mut scratch = Memory::new(initial_conditions_scratch(Order::First, &fft, None).unwrap());
+    let mut scratch = Memory::new(initial_conditions_scratch(Order::First.into(), &fft, None).unwrap());
     initial_conditions(
         &mut Components::triples(&mut x).unwrap(),
         &mut Components::triples(&mut v).unwrap(),

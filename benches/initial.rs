@@ -23,6 +23,7 @@ use fixpair::initial::lpt::{displacement, second_order_source};
 use fixpair::initial::modes::scale_by_table;
 use fixpair::initial::particles::{Components, Step, displace};
 use fixpair::initial::png::{Local, add_local};
+use fixpair::initial::shape::Shape;
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{Realisation, white_modes_coloured};
 use fixpair::real::Real;
@@ -42,6 +43,8 @@ fn conditions(box_size: f64) -> InitialConditions<'static> {
         redshift: 32.0,
         box_size,
         local: Local { f_nl: 100.0, g_nl: 0.0 },
+        shape: Shape::Local.rows(),
+        species: None,
         convention: Convention::Cmb,
         order: Order::Second,
     }
@@ -90,7 +93,7 @@ fn whole<T: Real>(criterion: &mut Criterion, name: &str) {
                 let (mut coarse, mut fine) = (Built::new(&coarse, exec), Built::new(&fine, exec));
                 let (mut fft, mut work) = (coarse.transform(), fine.transform());
                 let optional = dealiased.then_some(&work as &dyn Fft3<T>);
-                let layout = initial_conditions_scratch(Order::Second, &fft, optional).unwrap();
+                let layout = initial_conditions_scratch(Order::Second.into(), &fft, optional).unwrap();
                 let mut scratch = Memory::new(layout);
                 let kind = if dealiased { "dealiased" } else { "aliased" };
                 eprintln!(

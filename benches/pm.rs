@@ -15,6 +15,7 @@ use fixpair::initial::conditions::{
 };
 use fixpair::initial::particles::Components;
 use fixpair::initial::png::Local;
+use fixpair::initial::shape::Shape;
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::Realisation;
 use fixpair::pm::{
@@ -56,6 +57,8 @@ fn clustered<T: Real>() -> Vec<T> {
         redshift: 0.0,
         box_size: BOX_SIZE,
         local: Local { f_nl: 0.0, g_nl: 0.0 },
+        shape: Shape::Local.rows(),
+        species: None,
         convention: Convention::Cmb,
         order: Order::First,
     };
@@ -64,7 +67,7 @@ fn clustered<T: Real>() -> Vec<T> {
     let cells = Brick::whole_padded(N, Space::Configuration, recommended_padding::<T>(N)).unwrap();
     let mut work = Memory::new(Transform::<T>::workspace(N).unwrap());
     let mut fft = Transform::new(&tables, cells, work.bytes(), &Serial).unwrap();
-    let mut scratch = Memory::new(initial_conditions_scratch::<T>(Order::First, &fft, None).unwrap());
+    let mut scratch = Memory::new(initial_conditions_scratch::<T>(Order::First.into(), &fft, None).unwrap());
     let (mut x, mut v) = (vec![T::ZERO; 3 * N * N * N], vec![T::ZERO; 3 * N * N * N]);
     let position = &mut Components::triples(&mut x).unwrap();
     let velocity = &mut Components::triples(&mut v).unwrap();

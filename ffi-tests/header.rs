@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 34] = [
+const SECTIONS: [(&str, &str); 36] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -12,7 +12,9 @@ const SECTIONS: [(&str, &str); 34] = [
     ("noise", "Random modes"),
     ("cosmology", "Cosmology"),
     ("mode_table", "Cosmology on a mesh"),
+    ("species", "Species"),
     ("initial", "Initial conditions in one call"),
+    ("pre_initial", "Initial conditions at the host's own positions"),
     ("stages", "Initial conditions stage by stage"),
     ("particles", "Particles"),
     ("pm", "Deposit and read-out"),
@@ -41,10 +43,11 @@ const SECTIONS: [(&str, &str); 34] = [
 ];
 
 /// Files without functions that define structs of the interface.
-const STRUCTS: [&str; 17] = [
+const STRUCTS: [&str; 18] = [
     "src/capi/run.rs",
     "src/scratch.rs",
     "src/cosmology/growth.rs",
+    "src/initial/shape_rows.rs",
     "src/pm/factors.rs",
     "src/pm/evolve.rs",
     "src/halos/sums.rs",
@@ -85,6 +88,7 @@ fn generate() -> String {
     for (rust, c) in [
         ("Layout", "fixpair_layout"),
         ("Growth", "fixpair_growth"),
+        ("ShapeRow", "fixpair_shape_row"),
         ("StepFactors", "fixpair_step_factors"),
         ("Epoch", "fixpair_epoch"),
         ("HaloSums", "fixpair_halo_sums"),

@@ -9,6 +9,7 @@ use fixpair::initial::conditions::{
 use fixpair::initial::lpt::{displacement, second_order_source};
 use fixpair::initial::modes::{copy_modes, scale_by_table};
 use fixpair::initial::particles::{Components, Step, displace};
+use fixpair::initial::shape::Shape;
 use fixpair::initial::png::{Local, add_local, add_local_scratch};
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{
@@ -224,8 +225,10 @@ fn universe<T: Real>(order: Order, fine: Option<usize>, realisation: Realisation
         redshift: 32.0,
         box_size: BOX,
         local,
+        shape: Shape::Local.rows(),
         convention: Convention::Cmb,
         order,
+        species: None,
     };
     if order == Order::First {
         conditions.redshift = 49.0;
@@ -244,7 +247,7 @@ fn particles<T: Real>(
     fft: &mut dyn Fft3<T>,
     mut fine: Option<&mut dyn Fft3<T>>,
 ) -> Hash {
-    let layout = initial_conditions_scratch(conditions.order, fft, fine.as_deref()).expect("scratch");
+    let layout = initial_conditions_scratch(conditions.parts(), fft, fine.as_deref()).expect("scratch");
     let mut scratch = Memory::new(layout);
     let [mut position, mut velocity] = [(); 2].map(|()| vec![T::ZERO; 3 * N * N * N]);
     {

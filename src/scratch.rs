@@ -68,6 +68,22 @@ impl<'a> Arena<'a> {
         Ok(Self { rest: memory })
     }
 
+    /// As [`Arena::take`] for each of `counts`.
+    ///
+    /// # Errors
+    /// As [`Arena::take`].
+    pub fn take_each<T: Plain, const K: usize>(&mut self, counts: [usize; K]) -> Result<[&'a mut [T]; K]> {
+        let mut failure = None;
+        let pieces = counts.map(|count| match self.take(count) {
+            Ok(piece) => piece,
+            Err(error) => {
+                failure = Some(error);
+                &mut []
+            }
+        });
+        failure.map_or(Ok(pieces), Err)
+    }
+
     /// The next `count` values; their contents are whatever the memory held.
     ///
     /// # Errors

@@ -1,9 +1,13 @@
 //! The initial conditions of one universe: its density at z = 32, and its particles.
 
+use fixpair::cosmology::Cosmology;
 use fixpair::fft::Fft3;
-use fixpair::initial::particles::Components;
+use fixpair::initial::particles::{Components, displace};
 use fixpair::initial::png::Local;
-use fixpair::initial::realise::{Field, linear_density, second_order_particles, second_order_rest};
+use fixpair::initial::displacements::{Order, Work, displacements, rest_length};
+
+use fixpair::initial::realise::{Field, FieldWork, linear_density};
+use fixpair::initial::shape::Shape;
 use fixpair::noise::Realisation;
 
 use crate::Failure;
@@ -26,13 +30,16 @@ impl Start {
         local: Local,
     ) -> Result<Self, Failure> {
         let Universe { size, exec, potential_amplitude, alpha, .. } = universe;
-        let field = Field { realisation, potential_amplitude, local, transfer: alpha };
+        let shape = Shape::Local.rows();
+        let n_s = Cosmology::goliat().n_s;
+        let field = Field { realisation, potential_amplitude, local, shape, n_s, transfer: alpha };
         with_transform(*size, *exec, |fft| {
             with_transform(fine_side(*size)?, *exec, |fine| {
                 let mut density = vec![0.0; fft.length()];
                 let mut mesh = vec![0.0; fine.length()];
                 let mut partial = vec![[0.0]; fine.configuration().n()];
-                linear_density(&mut density, &field, fft, Some(fine), &mut mesh, &mut partial, *exec)?;
+                let work = FieldWork { mesh: &mut mesh, rest: &mut [], table: &mut [], partial: &mut partial };
+                linear_density(&mut density, &field, fft, Some(fine), work, *exec)?;
                 Ok(Self { density })
             })
         })
@@ -61,7 +68,7 @@ impl Start {
     /// # Errors
     /// Those of the kernels.
     pub(crate) fn particles(self, universe: &Universe<'_>) -> Result<[Vec<f32>; 2], Failure> {
-        let density = self.rounded();
+        let mut density = self.rounded();
         drop(self);
         let Universe { size, exec, motion, .. } = universe;
         let reals = 3 * size.pow(3);
@@ -69,16 +76,21 @@ impl Start {
         with_transform(*size, *exec, |fft| {
             with_transform(fine_side(*size)?, *exec, |fine| {
                 let mut source = vec![0.0; fine.length()];
-                let mut rest = vec![0.0; second_order_rest(&*fft, Some(fine))];
-                second_order_particles(
-                    &mut Components::triples(&mut position)?,
-                    &mut Components::triples(&mut velocity)?,
-                    &density,
+                let mut rest = vec![0.0; rest_length(Order::Second, false, &*fft, Some(fine))];
+                let position = &mut Components::triples(&mut position)?;
+                let velocity = &mut Components::triples(&mut velocity)?;
+                let (cells, step) = (*fft.configuration(), motion.step());
+                displacements(
+                    &mut density,
+                    Order::Second,
                     motion,
+                    None,
                     fft,
                     Some(fine),
-                    &mut source,
-                    &mut rest,
+                    Work { source: &mut source, rest: &mut rest, table: &mut [] },
+                    &mut |axis, first, second| {
+                        displace(position, velocity, first, second, &cells, axis, &step, *exec)
+                    },
                     *exec,
                 )?;
                 Ok(())

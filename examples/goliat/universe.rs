@@ -11,7 +11,8 @@ use fixpair::fft::next_side;
 use fixpair::initial::conditions::{InitialConditions, Order};
 use fixpair::initial::modes::scale_by_table;
 use fixpair::initial::png::Local;
-use fixpair::initial::realise::Motion;
+use fixpair::initial::shape::Shape;
+use fixpair::initial::displacements::Motion;
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::Realisation;
 use fixpair::real::Real;
@@ -66,6 +67,8 @@ impl<'a> Universe<'a> {
             redshift: REDSHIFT,
             box_size: length,
             local: Local::default(),
+            shape: Shape::Local.rows(),
+            species: None,
             convention: Convention::Cmb,
             order: Order::Second,
         };
@@ -99,7 +102,7 @@ impl<'a> Universe<'a> {
 
     /// Growth rate f = dln D/dln a.
     pub(crate) fn growth_rate(&self) -> f64 {
-        self.motion.first_velocity / self.hubble
+        self.motion.step().first_velocity / self.hubble
     }
 
     /// A field whose modes are all real, with values by |n|^2.

@@ -10,6 +10,7 @@ use fixpair::initial::conditions::{
 };
 use fixpair::initial::particles::Components;
 use fixpair::initial::png::Local;
+use fixpair::initial::shape::Shape;
 use fixpair::noise::{Amplitude, Phase, Realisation};
 use fixpair::pm::evolve::{Epoch, Gravity, Workshop, evolve, evolve_scratch};
 use fixpair::pm::factors::{Stepper, linear_steps};
@@ -124,11 +125,13 @@ fn start(
         redshift: START,
         box_size,
         local: Local::default(),
+        shape: Shape::Local.rows(),
+        species: None,
         convention: Convention::Cmb,
         order: Order::Second,
     };
     with_transform(side, exec, |fft| {
-        let mut scratch = Memory::new(initial_conditions_scratch(conditions.order, fft, None)?);
+        let mut scratch = Memory::new(initial_conditions_scratch(conditions.parts(), fft, None)?);
         Ok(initial_conditions(position, velocity, &conditions, fft, None, scratch.bytes(), exec)?)
     })
 }

@@ -7,20 +7,29 @@ use super::cosmology::{FIXPAIR_CONVENTION_CMB, fixpair_cosmology, fixpair_linear
 use super::exec::{HostExec, fixpair_exec};
 use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
 use super::noise::fixpair_realisation;
+use super::species::{fixpair_species, optional_species};
 use super::particles::{Triple, components, fixpair_components_f32, fixpair_components_f64};
 use super::status::{code, fixpair_status_t};
 use crate::cosmology::{Convention, Cosmology};
 use crate::fft::Fft3;
-use crate::initial::conditions::{InitialConditions, Order, initial_conditions, initial_conditions_scratch};
+use crate::initial::conditions::{
+    InitialConditions, Order, Parts, initial_conditions, initial_conditions_scratch,
+};
 use crate::initial::png::Local;
+use crate::initial::shape::{Shape, ShapeRow};
 use crate::real::Real;
 use crate::scratch::Layout;
 use crate::status::{Error, Result};
+
+/// The caller's own kernel: see fixpair_shape_row.
+pub const FIXPAIR_SHAPE_ROWS: i32 = 5;
 
 /// Zel'dovich displacements.
 pub const FIXPAIR_ORDER_FIRST: i32 = 1;
 /// Second-order Lagrangian perturbation theory.
 pub const FIXPAIR_ORDER_SECOND: i32 = 2;
+/// Third order, longitudinal and transverse, whose products never alias.
+pub const FIXPAIR_ORDER_THIRD: i32 = 3;
 
 /// A universe, and when and how large to start it: everything that fixpair_initial_conditions_f64 asks.
 #[repr(C)]
@@ -38,24 +47,32 @@ pub struct fixpair_conditions {
     pub redshift: f64,
     /// Side of the box in Mpc/h.
     pub box_size: f64,
-    /// Phi = Phi_G + f_nl (Phi_G^2 - <Phi_G^2>) + g_nl (Phi_G^3 - 3 <Phi_G^2> Phi_G).
+    /// Local: Phi = Phi_G + f_nl (Phi_G^2 - <Phi_G^2>) + g_nl (Phi_G^3 - 3 <Phi_G^2> Phi_G). Other shapes have another kernel than Phi_G^2.
     pub f_nl: f64,
-    /// See f_nl.
+    /// See f_nl; always local.
     pub g_nl: f64,
     /// In which convention f_nl and g_nl are: FIXPAIR_CONVENTION_CMB or _LSS.
     pub convention: i32,
-    /// FIXPAIR_ORDER_FIRST or _SECOND.
+    /// FIXPAIR_ORDER_FIRST, _SECOND or _THIRD.
     pub order: i32,
+    /// What f_nl multiplies: FIXPAIR_SHAPE_LOCAL, _EQUILATERAL, _ORTHOGONAL, _ORTHOGONAL_LSS, _FOLDED, or _ROWS for the rows below.
+    pub shape: i32,
+    /// Rows of FIXPAIR_SHAPE_ROWS.
+    pub rows_len: usize,
+    /// The caller's kernel; read for FIXPAIR_SHAPE_ROWS only.
+    pub rows: *const ShapeRow,
+    /// Which species the particles are, see fixpair_species; NULL for all matter as one.
+    pub species: *const fixpair_species,
 }
 
 /// # Safety
 /// `pointer` is null or points to a hook that keeps its contract.
-unsafe fn optional_fft<H: Hook>(border: &mut Border, pointer: *const H) -> Result<Option<HostFft<H::Real>>> {
+pub(super) unsafe fn optional_fft<H: Hook>(border: &mut Border, pointer: *const H) -> Result<Option<HostFft<H::Real>>> {
     // SAFETY: the caller's promise.
     if pointer.is_null() { Ok(None) } else { unsafe { HostFft::new(border, pointer) }.map(Some) }
 }
 
-fn some_dyn<T: Real>(fft: &mut Option<HostFft<T>>) -> Option<&mut dyn Fft3<T>> {
+pub(super) fn some_dyn<T: Real>(fft: &mut Option<HostFft<T>>) -> Option<&mut dyn Fft3<T>> {
     fft.as_mut().map(|fft| {
         let fft: &mut dyn Fft3<T> = fft;
         fft
@@ -90,15 +107,42 @@ pub unsafe extern "C" fn fixpair_conditions_init(
             g_nl: 0.0,
             convention: FIXPAIR_CONVENTION_CMB,
             order: FIXPAIR_ORDER_SECOND,
+            shape: Shape::Local as i32,
+            rows_len: 0,
+            rows: core::ptr::null(),
+            species: core::ptr::null(),
         };
         Ok(())
     })())
 }
 
 impl fixpair_conditions {
+    /// What scratch depends on.
+    ///
     /// # Safety
-    /// The table of `linear` is null or points to as many values as it says.
-    unsafe fn check<'a>(&self, border: &mut Border) -> Result<InitialConditions<'a>> {
+    /// `rows` is null or points to as many as it says.
+    pub(super) unsafe fn parts(&self, border: &mut Border) -> Result<Parts> {
+        if self.struct_size != size_of::<Self>() {
+            return Err(Error::Version);
+        }
+        // SAFETY: the caller's promise.
+        let local = ShapeRow::local(unsafe { self.shape(border) }?).is_some();
+        Ok(Parts { order: Order::try_from(self.order)?, local, species: !self.species.is_null() })
+    }
+
+    /// # Safety
+    /// As `parts`.
+    unsafe fn shape<'a>(&self, border: &mut Border) -> Result<&'a [ShapeRow]> {
+        if self.shape == FIXPAIR_SHAPE_ROWS {
+            // SAFETY: the caller's promise.
+            return unsafe { border.read(self.rows, self.rows_len) };
+        }
+        Shape::try_from(self.shape).map(Shape::rows)
+    }
+
+    /// # Safety
+    /// The table of `linear`, rows and species are null or point to as many values as they say.
+    pub(super) unsafe fn check<'a>(&self, border: &mut Border) -> Result<InitialConditions<'a>> {
         if self.struct_size != size_of::<Self>() {
             return Err(Error::Version);
         }
@@ -111,19 +155,24 @@ impl fixpair_conditions {
             redshift: self.redshift,
             box_size: self.box_size,
             local: Local { f_nl: self.f_nl, g_nl: self.g_nl },
+            // SAFETY: the caller's promise.
+            shape: unsafe { self.shape(border) }?,
             convention: Convention::try_from(self.convention)?,
             order: Order::try_from(self.order)?,
+            // SAFETY: the caller's promise.
+            species: unsafe { optional_species(border, self.species) }?,
         })
     }
 }
 
-/// Scratch of fixpair_initial_conditions_f64: at second order one mesh of fft->length reals and two of fine->length, or four of
-/// fft->length without `fine`; at first order one of each, or two of fft->length. And 16 bytes for each |n|^2 up to 3 (n/2)^2 and
-/// 8 for each plane, each array rounded up to 64 bytes. Second order with a `fine` of 3/2 the side: 63 bytes a cell (f32: 32); without
-/// it 33 (17).
+/// Scratch of fixpair_initial_conditions_f64. With n = fft->length and m = fine->length, or n without `fine`, in reals: at second order
+/// n + m + max(2 n, m), at first n + m, or 3 n + m for a species, at third 18 n + m; with a shape other than local at least 2 n + 2 m. And 8 bytes
+/// for each |n|^2 up to 3 (n/2)^2 in 2 tables, 1 more for such a shape, 2 more for a species, 8 for each plane, 8 n at third order; each array
+/// rounded up to 64 bytes. Second order with a `fine` of 3/2 the side: 63 bytes a cell (f32: 32); without it 33 (17). Third order
+/// without it: 155 (78).
 ///
 /// Out: scratch
-/// In:  conditions  only the order is read
+/// In:  conditions  its order, its shape with its rows, and whether it has a species
 ///      fft, fine   as fixpair_initial_conditions_f64
 /// Returns: 0, FIXPAIR_ERROR_NULL, _VERSION, _CHOICE, _OVERFLOW, or why a hook is refused
 ///
@@ -165,19 +214,15 @@ unsafe fn conditions_scratch<H: Hook>(
     // SAFETY: the caller's promise.
     unsafe {
         let scratch = border.write_one(scratch)?;
-        let conditions = border.read_one(conditions)?;
-        if conditions.struct_size != size_of::<fixpair_conditions>() {
-            return Err(Error::Version);
-        }
-        let order = Order::try_from(conditions.order)?;
+        let parts = border.read_one(conditions)?.parts(&mut border)?;
         let fft = HostFft::new(&mut border, fft)?;
         let mut fine = optional_fft(&mut border, fine)?;
-        *scratch = initial_conditions_scratch(order, &fft, some_dyn(&mut fine).as_deref())?;
+        *scratch = initial_conditions_scratch(parts, &fft, some_dyn(&mut fine).as_deref())?;
         Ok(())
     }
 }
 
-/// One call from a seed to particles: Fixed, Paired or Matched initial conditions with local primordial non-Gaussianity, in the only right order:
+/// One call from a seed to particles: Fixed, Paired or Matched initial conditions with primordial non-Gaussianity, in the only right order:
 /// noise -> fix -> invert -> colour -> PNG -> transfer -> displace.
 ///
 /// One particle for each cell of fft->configuration, numbered with z fastest; ids from fixpair_particle_ids. Two calls that differ in
@@ -187,7 +232,8 @@ unsafe fn conditions_scratch<H: Hook>(
 ///      velocity    peculiar, km/s (Gadget files store it divided by sqrt(a)): the same length
 /// In:  conditions
 ///      fft         the transform; its bricks decide which part of the mesh and so which particles this process makes
-///      fine        a transform of side 3n/2 or more (2n with g_nl), on which products are free of aliasing; NULL to let them alias.
+///      fine        a transform of side 3n/2 or more (2n with g_nl), on which products are free of aliasing; NULL to let f_nl, g_nl and
+///                  the second order alias. FIXPAIR_ORDER_THIRD does without: its products, those of the second order too, never alias.
 ///                  On more than one process, each must hold the same modes of both meshes below n/2: the slabs that FFTW-MPI deals out
 ///                  for two sides do not
 ///      scratch     scratch_len bytes, see fixpair_initial_conditions_scratch_f64
@@ -195,7 +241,8 @@ unsafe fn conditions_scratch<H: Hook>(
 /// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _TABLE, _SCRATCH, _CHOICE, _VERSION, _CONVERGENCE, _OVERFLOW,
 ///          _MESH_SIZE, _BRICK for a `fine` that is too small; after FIXPAIR_ERROR_HOOK, or FIXPAIR_ERROR_NOT_FINITE from fields that overflow, position and
 ///          velocity are undefined; on several processes NOT_FINITE may be the answer of some only
-/// Cost: at second order 13 transforms of fft, or 6 of it and 8 of fine; 2 more with f_nl or g_nl
+/// Cost: at second order 13 transforms of fft, or 6 of it and 8 of fine; 2 more with local f_nl or g_nl, 7 or 14 with other shapes; at third
+///       198 transforms of fft
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.

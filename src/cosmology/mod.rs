@@ -3,9 +3,10 @@
 //! With a the scale factor, H = H0 E(a), and k in h/Mpc:
 //!
 //! - E^2(a) = Or a^-4 + Om a^-3 + Ok a^-2 + Ode a^(-3(1+w0+wa)) e^(-3 wa (1-a)) ([`background`]);
-//! - D'' + (2 + dlnE/dlna) D' = (3/2) Om(a) D, and D2 with the source -(3/2) Om(a) D^2 ([`growth`](mod@growth));
+//! - D'' + (2 + dlnE/dlna) D' = (3/2) Om(a) D, and higher orders with sources made of it ([`growth`](mod@growth));
 //! - P(k, a) = A k^n_s T^2(k) D^2(a) (Mpc/h)^3 ([`power`]), from a [`table`] or from [`eisenstein_hu`];
-//! - delta(k, a) = alpha(k, a) Phi(k) ([`poisson`]), and both as tables over |n|^2 for the mode kernels ([`mode_table`]).
+//! - delta(k, a) = alpha(k, a) Phi(k) ([`poisson`]), and both as tables over |n|^2 for the mode kernels ([`mode_table`]);
+//! - delta_s = (T_s/T_m) delta of one species of matter ([`species`]).
 //!
 //! Invariants: D(a = 1) = 1; T -> 1 for k -> 0; Phi is the primordial Bardeen potential with the sign that makes alpha > 0.
 //! All numbers are f64, all functions are pure, and elementary functions come from `libm`: the same bits everywhere.
@@ -24,6 +25,7 @@ pub mod mode_table;
 pub mod poisson;
 pub mod power;
 pub mod quadrature;
+pub mod species;
 pub mod table;
 
 pub use background::{Cosmology, radiation_density};
@@ -33,6 +35,7 @@ pub(crate) use mode_table::mode_power_table;
 pub use mode_table::{alpha_table, mode_table_length, potential_amplitude_table};
 pub use poisson::{Convention, Poisson, alpha_factor, primordial_amplitude};
 pub use power::Linear;
+pub use species::{Ratio, Species, species_table};
 pub use table::Table;
 
 /// c/H0 in Mpc/h: 299792.458 km/s over 100 km/s per Mpc/h.

@@ -1,15 +1,17 @@
 //! One call from a seed to particles.
 
-use super::particles::Components;
+pub use super::displacements::Order;
+use super::displacements::{FirstOrder, Motion, Place, Work, displacements, rest_length, table_length};
+use super::particles::{Components, displace};
 use super::png::Local;
-use super::realise::{
-    Field, Motion, first_order_particles, linear_density, second_order_particles, second_order_rest,
-};
+use super::realise::{Field, FieldWork, linear_density, shape_rest};
+use super::shape::{Quadratic, ShapeRow};
 use crate::cosmology::background::Cosmology;
 use crate::cosmology::growth::Growth;
 use crate::cosmology::mode_table::{alpha_table, mode_table_length, potential_amplitude_table};
 use crate::cosmology::poisson::{Convention, Poisson};
 use crate::cosmology::power::Linear;
+use crate::cosmology::species::{Ratio, Species, species_table};
 use crate::exec::Exec;
 use crate::fft::Fft3;
 use crate::noise::Realisation;
@@ -17,30 +19,6 @@ use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::status::{Error, Result};
 use crate::walk::chunks;
-
-/// Order of the displacements.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[repr(i32)]
-pub enum Order {
-    /// Zel'dovich.
-    First = 1,
-    /// 2LPT.
-    #[default]
-    Second = 2,
-}
-
-impl TryFrom<i32> for Order {
-    type Error = Error;
-
-    /// `Choice` for any number but 1 and 2.
-    fn try_from(number: i32) -> Result<Self> {
-        match number {
-            1 => Ok(Self::First),
-            2 => Ok(Self::Second),
-            _ => Err(Error::Choice),
-        }
-    }
-}
 
 /// A universe, and when and how large to start it.
 #[derive(Clone, Copy, Debug)]
@@ -55,17 +33,54 @@ pub struct InitialConditions<'a> {
     pub redshift: f64,
     /// Side of the box in Mpc/h.
     pub box_size: f64,
-    /// Local f_NL and g_NL.
+    /// f_NL of `shape`, and local g_NL.
     pub local: Local,
-    /// In which convention f_NL is given.
+    /// The kernel that f_NL multiplies: [`super::shape::Shape::rows`], or the caller's own.
+    pub shape: &'a [ShapeRow],
+    /// In which convention f_NL and g_NL are given.
     pub convention: Convention,
-    /// 1LPT or 2LPT.
+    /// 1LPT, 2LPT or 3LPT.
     pub order: Order,
+    /// Which species the particles are; none for all matter as one.
+    pub species: Option<Species<'a>>,
+}
+
+/// What of [`InitialConditions`] decides how much scratch they take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Parts {
+    /// 1LPT, 2LPT or 3LPT.
+    pub order: Order,
+    /// f_NL is local.
+    pub local: bool,
+    /// The particles are one species of several.
+    pub species: bool,
+}
+
+impl From<Order> for Parts {
+    /// Local f_NL, and all matter as one.
+    fn from(order: Order) -> Self {
+        Self { order, local: true, species: false }
+    }
 }
 
 impl<'a> InitialConditions<'a> {
+    /// What scratch depends on.
+    #[must_use]
+    pub fn parts(&self) -> Parts {
+        let local = ShapeRow::local(self.shape).is_some();
+        Parts { order: self.order, local, species: self.species.is_some() }
+    }
+
+    /// Are there two fields of displacements, or one?
+    pub(crate) fn has_second_field(&self) -> bool {
+        self.order != Order::First || self.species.is_some()
+    }
+
     fn check(&self) -> Result<()> {
         self.local.check()?;
+        let quadratic =
+            Quadratic { f_nl: self.local.f_nl, rows: self.shape, n_s: self.linear.n_s() };
+        quadratic.check()?;
         if !self.redshift.is_finite() || !self.box_size.is_finite() {
             return Err(Error::NotFinite);
         }
@@ -88,7 +103,7 @@ impl<'a> InitialConditions<'a> {
         Poisson::new(&self.cosmology, self.linear, self.scale_factor(), self.convention)
     }
 
-    /// D2/D^2, and velocities over displacements: a H f in km/s per Mpc/h.
+    /// What displacements and velocities take from the cosmology; in km/s per Mpc/h.
     ///
     /// # Errors
     /// As [`InitialConditions::poisson`].
@@ -99,18 +114,22 @@ impl<'a> InitialConditions<'a> {
     fn motion_of(&self, growth: Growth) -> Result<Motion> {
         let a = self.scale_factor();
         let hubble = 100.0 * self.cosmology.expansion(a)?;
+        let Growth { d, f, d2, f2, d3a, f3a, d3b, f3b, d3c, f3c } = growth;
         Ok(Motion {
             box_size: self.box_size,
-            second_order: growth.d2 / (growth.d * growth.d),
-            first_velocity: a * hubble * growth.f,
-            second_velocity: a * hubble * growth.f2,
+            velocity: a * hubble,
+            rates: [f, f2],
+            second_order: d2 / (d * d),
+            third_order: [d3a, d3b, d3c].map(|d3| d3 / (d * d * d)),
+            third_rates: [f3a, f3b, f3c],
         })
     }
 }
 
 /// Lengths of the arrays in scratch, in the order in which they lie there.
 struct Sizes {
-    table: usize,
+    tables: [usize; 5],
+    half_cells: usize,
     partial: usize,
     density: usize,
     mesh: usize,
@@ -118,21 +137,26 @@ struct Sizes {
 }
 
 impl Sizes {
-    fn new<T: Real>(order: Order, fft: &dyn Fft3<T>, fine: Option<&(dyn Fft3<T> + '_)>) -> Result<Self> {
-        let work = fine.unwrap_or(fft);
+    fn new<T: Real>(parts: Parts, fft: &dyn Fft3<T>, fine: Option<&(dyn Fft3<T> + '_)>) -> Result<Self> {
+        let Parts { order, local, species } = parts;
+        let (n, work) = (fft.configuration().n(), fine.unwrap_or(fft));
+        let table = mode_table_length(n)?;
+        let [of_shape, of_species] = [!local, species].map(|there| if there { table } else { 0 });
+        let for_shape = if local { 0 } else { shape_rest(fft, work) };
         Ok(Self {
-            table: mode_table_length(fft.configuration().n())?,
+            tables: [table, table, of_shape, of_species, of_species],
+            half_cells: table_length(order, n),
             partial: chunks(work.configuration()),
             density: fft.length(),
             mesh: work.length().max(fft.length()),
-            rest: if order == Order::First { 0 } else { second_order_rest(fft, fine) },
+            rest: rest_length(order, species, fft, fine).max(for_shape),
         })
     }
 
     fn layout<T: Real>(&self) -> Result<Layout> {
-        Layout::EMPTY
-            .and::<f64>(self.table)?
-            .and::<f64>(self.table)?
+        let tables = self.tables.iter().try_fold(Layout::EMPTY, |layout, &table| layout.and::<f64>(table))?;
+        tables
+            .and::<[f64; 2]>(self.half_cells)?
             .and::<[f64; 1]>(self.partial)?
             .and::<T>(self.density)?
             .and::<T>(self.mesh)?
@@ -140,69 +164,111 @@ impl Sizes {
     }
 }
 
-/// Scratch of [`initial_conditions`]: at second order one mesh of `fft` and two of `fine`, or four of `fft` without it; at first
-/// order one of `fft` and one of `fine`, or two of `fft`. And 16 bytes for each |n|^2 up to 3 (N/2)^2. In bytes a cell, second order,
-/// with a `fine` of 3/2 the side: 63 in f64, 32 in f32; without it 33 and 17.
+/// Scratch of [`initial_conditions`], in meshes of `fft` (n) and of `fine` (m; n again without one):
+///
+/// | | local f_NL | other shapes |
+/// |---|---|---|
+/// | first order | n + m | 2 n + 2 m |
+/// | first order of a species | 3 n + m | 3 n + m, or 2 n + 2 m if that is more |
+/// | second order | n + m + the larger of 2 n and m | the same, or 2 n + 2 m if that is more |
+/// | third order | 18 n + m | the same |
+///
+/// And 8 bytes for each |n|^2 up to 3 (N/2)^2 in two tables, one more for a shape, two more for a species, 16 for each of N/2 + 1 at third order, and 8
+/// for each chunk. In bytes a cell, second order, local, with a `fine` of 3/2 the side: 63 in f64, 32 in f32; without it 33 and 17. Third order
+/// without it: 155 and 78.
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
 pub fn initial_conditions_scratch<T: Real>(
-    order: Order,
+    parts: Parts,
     fft: &dyn Fft3<T>,
     fine: Option<&(dyn Fft3<T> + '_)>,
 ) -> Result<Layout> {
-    Sizes::new(order, fft, fine)?.layout::<T>()
+    Sizes::new(parts, fft, fine)?.layout::<T>()
 }
 
-/// Positions and velocities of a Fixed, Paired or Matched universe with local primordial non-Gaussianity: noise -> fix -> invert -> colour ->
+/// Positions and velocities of a Fixed, Paired or Matched universe with primordial non-Gaussianity: noise -> fix -> invert -> colour ->
 /// PNG -> transfer -> displace.
 ///
 /// `position` in Mpc/h, in [0, L); `velocity`: peculiar, in km/s (Gadget files store it divided by sqrt(a)). One particle for each cell
 /// of `fft`, in the order of [`super::particles`]. `fine`: a transform for products without aliasing, of side 3N/2 or more, 2N
-/// or more with g_NL; without it products alias.
+/// or more with g_NL; without it f_NL, g_NL and the second order alias. The third order, and the second where there is a third, never do.
 ///
 /// # Errors
 /// Those of the stages; outputs are untouched unless it is `Hook`, or `NotFinite` because the fields overflow.
 ///
-/// Cost: with f_NL and second order 15 transforms, or 6 of `fft` and 10 of `fine`; one noise field, and about 33 passes.
+/// Cost: with f_NL and second order 15 transforms, or 6 of `fft` and 10 of `fine`; one noise field, and about 33 passes. At third order 198 transforms
+/// of `fft`, and those of f_NL.
 pub fn initial_conditions<T: Real>(
     position: &mut Components<'_, T>,
     velocity: &mut Components<'_, T>,
     conditions: &InitialConditions<'_>,
     fft: &mut dyn Fft3<T>,
+    fine: Option<&mut (dyn Fft3<T> + '_)>,
+    scratch: &mut [u8],
+    exec: &dyn Exec,
+) -> Result<()> {
+    let cells = *fft.configuration();
+    position.check_length(cells.elements())?;
+    velocity.check_length(cells.elements())?;
+    let step = conditions.motion()?.step();
+    let mut place = |axis: usize, first: &[T], second: Option<&[T]>| {
+        displace(position, velocity, first, second, &cells, axis, &step, exec)
+    };
+    displaced(conditions, fft, fine, scratch, &mut place, exec)
+}
+
+/// All but the last stage, which is `place`.
+pub(crate) fn displaced<T: Real>(
+    conditions: &InitialConditions<'_>,
+    fft: &mut dyn Fft3<T>,
     mut fine: Option<&mut (dyn Fft3<T> + '_)>,
     scratch: &mut [u8],
+    place: &mut Place<'_, T>,
     exec: &dyn Exec,
 ) -> Result<()> {
     let poisson = conditions.poisson()?;
     let motion = conditions.motion_of(poisson.growth())?;
-    let n = fft.configuration().n();
-    let particles = fft.configuration().elements();
-    position.check_length(particles)?;
-    velocity.check_length(particles)?;
+    let (n, box_size) = (fft.configuration().n(), conditions.box_size);
     if let Some(fine) = fine.as_deref() {
         let least = conditions.local.dealiased_side(n).max(3 * n / 2);
         if fine.configuration().n() < least {
             return Err(Error::Brick);
         }
     }
-    let sizes = Sizes::new(conditions.order, fft, fine.as_deref())?;
+    let sizes = Sizes::new(conditions.parts(), fft, fine.as_deref())?;
     let mut arena = Arena::new(scratch, sizes.layout::<T>()?)?;
-    let potential_amplitude = arena.take::<f64>(sizes.table)?;
-    let transfer = arena.take::<f64>(sizes.table)?;
+    let [potential_amplitude, transfer, powers, density_ratio, velocity_ratio] =
+        arena.take_each::<f64, 5>(sizes.tables)?;
+    let half_cells = arena.take::<[f64; 2]>(sizes.half_cells)?;
     let partial = arena.take::<[f64; 1]>(sizes.partial)?;
     let density = arena.take::<T>(sizes.density)?;
     let mesh = arena.take::<T>(sizes.mesh)?;
-    potential_amplitude_table(exec, &poisson, n, conditions.box_size, potential_amplitude)?;
-    alpha_table(exec, &poisson, n, conditions.box_size, transfer)?;
-    let field =
-        Field { realisation: conditions.realisation, potential_amplitude, local: conditions.local, transfer };
-    linear_density(density, &field, fft, fine.as_deref_mut(), mesh, partial, exec)?;
-    match conditions.order {
-        Order::First => first_order_particles(position, velocity, density, &motion, fft, mesh, exec),
-        Order::Second => {
-            let rest = arena.take::<T>(sizes.rest)?;
-            second_order_particles(position, velocity, density, &motion, fft, fine, mesh, rest, exec)
+    let rest = arena.take::<T>(sizes.rest)?;
+    potential_amplitude_table(exec, &poisson, n, box_size, potential_amplitude)?;
+    alpha_table(exec, &poisson, n, box_size, transfer)?;
+    let first_order = match &conditions.species {
+        None => None,
+        Some(species) => {
+            if species.has_own_growth() {
+                species_table(exec, species, Ratio::Matter, n, box_size, density_ratio)?;
+                transfer.iter_mut().zip(&*density_ratio).for_each(|(alpha, ratio)| *alpha *= ratio);
+            }
+            species_table(exec, species, Ratio::Density, n, box_size, density_ratio)?;
+            species_table(exec, species, Ratio::Velocity, n, box_size, velocity_ratio)?;
+            Some(FirstOrder::new(density_ratio, velocity_ratio, &motion))
         }
-    }
+    };
+    let field = Field {
+        realisation: conditions.realisation,
+        potential_amplitude,
+        local: conditions.local,
+        shape: conditions.shape,
+        n_s: conditions.linear.n_s(),
+        transfer,
+    };
+    let work = FieldWork { mesh: &mut *mesh, rest: &mut *rest, table: powers, partial };
+    linear_density(density, &field, fft, fine.as_deref_mut(), work, exec)?;
+    let work = Work { source: mesh, rest, table: half_cells };
+    displacements(density, conditions.order, &motion, first_order.as_ref(), fft, fine, work, place, exec)
 }

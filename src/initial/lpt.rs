@@ -27,9 +27,15 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
 }
 
 /// i n_a/|n|^2 times a scale: minus the gradient of the inverse Laplacian, in units of L/(2 pi).
-struct InverseGradient {
+pub(super) struct InverseGradient {
     along: [f64; 3],
     scale: f64,
+}
+
+impl InverseGradient {
+    pub(super) fn new(axis: usize, scale: f64) -> Self {
+        Self { along: along(axis), scale }
+    }
 }
 
 impl Factor for InverseGradient {
@@ -87,7 +93,7 @@ pub fn displacement<T: Real>(
     if out.len() != fft.length() {
         return Err(Error::Length);
     }
-    map_modes(out, &modes, source, brick, &InverseGradient { along: along(axis), scale }, exec)?;
+    map_modes(out, &modes, source, brick, &InverseGradient::new(axis, scale), exec)?;
     fft.inverse(out)
 }
 

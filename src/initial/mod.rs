@@ -5,6 +5,7 @@
 //! gives the field: f(x) = sum_k f_k exp(+i k.x).
 
 pub mod conditions;
+pub mod displacements;
 pub mod lpt;
 pub mod modes;
 pub mod particles;

@@ -109,6 +109,23 @@ pub fn add_quadratic<T: Real>(
     table: &mut [f64],
     exec: &dyn Exec,
 ) -> Result<()> {
+    match quadratic_modes(phi, brick, quadratic, work, meshes, sum, table, exec)? {
+        Some(scale) => add_modes(phi, brick, sum, brick, &Scale(scale), exec),
+        None => Ok(()),
+    }
+}
+
+/// The modes that [`add_quadratic`] adds, in `sum`, up to the factor that is returned; or `None` if there is nothing to add.
+pub(super) fn quadratic_modes<T: Real>(
+    phi: &[T],
+    brick: &Brick,
+    quadratic: &Quadratic<'_>,
+    work: &mut dyn Fft3<T>,
+    meshes: [&mut [T]; 2],
+    sum: &mut [T],
+    table: &mut [f64],
+    exec: &dyn Exec,
+) -> Result<Option<f64>> {
     quadratic.check()?;
     brick.check_space(Space::Fourier)?;
     brick.check_length(phi)?;
@@ -118,7 +135,7 @@ pub fn add_quadratic<T: Real>(
     }
     quadratic.check_powers(n)?;
     if quadratic.is_gaussian() {
-        return Ok(());
+        return Ok(None);
     }
     brick.check_length(sum)?;
     let table = table.get_mut(..mode_table_length(n)?).ok_or(Error::Length)?;
@@ -160,8 +177,7 @@ pub fn add_quadratic<T: Real>(
     if let Some(s_out) = pending {
         finish(b, s_out, work, &mut powers)?;
     }
-    let scale = quadratic.f_nl / (m as f64 * m as f64 * m as f64);
-    add_modes(phi, brick, sum, brick, &Scale(scale), exec)
+    Ok(Some(quadratic.f_nl / (m as f64 * m as f64 * m as f64)))
 }
 
 /// X_s, by a table that is filled anew for each s.

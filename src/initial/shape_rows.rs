@@ -36,6 +36,15 @@ impl ShapeRow {
         Self { coefficient, s_out: s_out as f64, s_a: s_a as f64, s_b: s_b as f64 }
     }
 
+    /// The coefficient, if all that the rows are is Phi^2.
+    #[must_use]
+    pub fn local(rows: &[Self]) -> Option<f64> {
+        match rows {
+            [Self { coefficient, s_out: 0.0, s_a: 0.0, s_b: 0.0 }] => Some(*coefficient),
+            _ => None,
+        }
+    }
+
     /// # Errors
     /// As [`super::shape::Quadratic::check`].
     pub fn check(&self) -> Result<()> {

@@ -7,7 +7,8 @@ use super::conditions::{InitialConditions, Order, initial_conditions, initial_co
 use super::modes::{copy_modes, scale_by_table};
 use super::particles::Components;
 use super::png::Local;
-use super::realise::{Field, linear_density};
+use super::realise::{Field, FieldWork, linear_density};
+use super::shape::Shape;
 use crate::cosmology::{
     Convention, Cosmology, EisensteinHu, Linear, Wiggles, alpha_table, mode_table_length,
     potential_amplitude_table,
@@ -41,6 +42,8 @@ fn conditions(realisation: Realisation, f_nl: f64) -> InitialConditions<'static>
         redshift: 32.0,
         box_size: BOX,
         local: Local { f_nl, g_nl: 0.0 },
+        shape: Shape::Local.rows(),
+        species: None,
         convention: Convention::Cmb,
         order: Order::Second,
     }
@@ -67,9 +70,17 @@ fn density<T: Real>(n: usize, realisation: Realisation, f_nl: f64) -> Vec<T> {
     let mut out = vec![T::ZERO; fft.length()];
     let mut mesh = vec![T::ZERO; fine.length()];
     let local = Local { f_nl, g_nl: 0.0 };
-    let field = Field { realisation, potential_amplitude: &potential_amplitude, local, transfer: &transfer };
+    let field = Field {
+        realisation,
+        potential_amplitude: &potential_amplitude,
+        local,
+        shape: Shape::Local.rows(),
+        n_s: 1.0,
+        transfer: &transfer,
+    };
     let mut partial = vec![[0.0]; 3 * n / 2];
-    linear_density(&mut out, &field, &mut fft, Some(&mut fine), &mut mesh, &mut partial, &Serial).unwrap();
+    let work = FieldWork { mesh: &mut mesh, rest: &mut [], table: &mut [], partial: &mut partial };
+    linear_density(&mut out, &field, &mut fft, Some(&mut fine), work, &Serial).unwrap();
     out
 }
 
@@ -277,7 +288,7 @@ fn particles<T: Real>(
     let (mut fft, mut work) = (serial::<T>(n), serial::<T>(3 * n / 2));
     let (mut x, mut v) = (vec![T::ZERO; 3 * n * n * n], vec![T::ZERO; 3 * n * n * n]);
     let optional = fine.then_some(&work as &dyn Fft3<T>);
-    let scratch = memory(initial_conditions_scratch(conditions.order, &fft, optional).unwrap());
+    let scratch = memory(initial_conditions_scratch(conditions.parts(), &fft, optional).unwrap());
     initial_conditions(
         &mut Components::triples(&mut x).unwrap(),
         &mut Components::triples(&mut v).unwrap(),
@@ -371,7 +382,7 @@ fn bad_conditions_are_refused_before_anything_is_written() {
     let mut attempt = |conditions: &InitialConditions<'_>, fine: usize, bytes: usize| {
         let (mut fft, mut work) = (serial::<f64>(n), serial::<f64>(fine));
         let layout =
-            initial_conditions_scratch(conditions.order, &fft, Some(&work as &dyn Fft3<f64>)).unwrap();
+            initial_conditions_scratch(conditions.parts(), &fft, Some(&work as &dyn Fft3<f64>)).unwrap();
         let scratch = memory(layout);
         let scratch = &mut scratch[..bytes.min(layout.size)];
         let outcome = initial_conditions(
@@ -415,7 +426,7 @@ fn scratch_stays_within_the_documented_bytes_a_cell() {
         let n = 64;
         let (fft, fine) = (serial::<T>(n), serial::<T>(3 * n / 2));
         let fine = dealiased.then_some(&fine as &dyn Fft3<T>);
-        initial_conditions_scratch(order, &fft, fine).unwrap().size as f64 / (n * n * n) as f64
+        initial_conditions_scratch(order.into(), &fft, fine).unwrap().size as f64 / (n * n * n) as f64
     }
     // A row of n = 64 has 3% of padding, and the tables by |n|^2 add 12/n bytes; both shrink with n.
     assert!(bytes::<f64>(Order::Second, false) < 33.3);
@@ -434,7 +445,7 @@ fn tables_have_the_same_bits_on_every_machine() {
     };
     let (potential, alpha) = tables(16);
     let motion = conditions(Realisation::new(0), 0.0).motion().unwrap();
-    let factors = [motion.second_order, motion.first_velocity, motion.second_velocity];
+    let factors = [motion.second_order, motion.step().first_velocity, motion.step().second_velocity];
     let pinned = [0xdc23_07d9_7a55_3429, 0xa564_6dd2_f72f_1193, 0x8c4b_7be2_5e33_8079];
     assert_eq!([hash(&potential), hash(&alpha), hash(&factors)], pinned);
 }

@@ -12,6 +12,7 @@ use crate::fft::Fft3;
 use crate::initial::conditions::{InitialConditions, Order, initial_conditions, initial_conditions_scratch};
 use crate::initial::particles::Components;
 use crate::initial::png::Local;
+use crate::initial::shape::Shape;
 use crate::noise::{Amplitude, Realisation};
 use crate::pm::evolve::*;
 use crate::pm::factors::{COLA_EXPONENT, Stepper, half_step, logarithmic_steps};
@@ -64,11 +65,13 @@ fn start<T: Real>(n: usize, part: f64, order: Order) -> Particles<T> {
         redshift: 1.0 / START - 1.0,
         box_size: BOX,
         local: Local::default(),
+        shape: Shape::Local.rows(),
+        species: None,
         convention: Convention::Cmb,
         order,
     };
     let mut fft = transform::<T>(n, &Serial);
-    let scratch = memory(initial_conditions_scratch(order, &fft, None).unwrap());
+    let scratch = memory(initial_conditions_scratch(order.into(), &fft, None).unwrap());
     let (mut x, mut u) = (vec![T::ZERO; 3 * n * n * n], vec![T::ZERO; 3 * n * n * n]);
     let position = &mut Components::triples(&mut x).unwrap();
     let velocity = &mut Components::triples(&mut u).unwrap();
