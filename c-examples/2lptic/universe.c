@@ -115,7 +115,8 @@ static int make_anywhere(struct universe *universe, const struct fixpair_compone
     for (size_t i = 0; i < 3 * count; i++) before[i] = box * glass_coordinate(&universe->glass, i / 3, i % 3);
     struct fixpair_positions_f64 glass = {before, before + 1, before + 2, 3, count};
 
-    fixpair_status_t status = fixpair_initial_conditions_at_scratch_f64(&layout, &universe->conditions, &universe->fft.hook, fine);
+    fixpair_status_t status =
+        fixpair_initial_conditions_at_scratch_f64(&layout, &universe->conditions, count, &universe->fft.hook, fine);
     void *scratch = status == 0 ? memory_take(layout) : NULL;
     if (scratch != NULL) {
         status = fixpair_initial_conditions_at_f64(x, v, &glass, &universe->conditions, &universe->fft.hook, fine, scratch,

@@ -67,7 +67,9 @@ module fixpair
     type(fixpair_cosmology) :: cosmology
     type(fixpair_linear) :: linear
     real(c_double) :: redshift, box_size, f_nl, g_nl
-    integer(c_int32_t) :: convention, order
+    integer(c_int32_t) :: convention, order, shape
+    integer(c_size_t) :: rows_len
+    type(c_ptr) :: rows, species
   end type
 
   type, bind(c) :: fixpair_components_f64

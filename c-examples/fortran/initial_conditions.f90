@@ -56,7 +56,8 @@ contains
     call fixpair_try(fixpair_conditions_init(c, 7_c_int64_t))
     call claim(c%realisation%seed == 7 .and. c%realisation%sample == 0 .and. abs(c%cosmology%omega_m - 0.27d0) < 1d-15 .and. &
                c%linear%source == fixpair_linear_eisenstein_hu .and. abs(c%linear%amount - 0.8d0) < 1d-15 .and. &
-               nint(c%redshift) == 32 .and. nint(c%box_size) == 1000 .and. c%order == fixpair_order_second, &
+               nint(c%redshift) == 32 .and. nint(c%box_size) == 1000 .and. c%order == fixpair_order_second .and. &
+               c%shape == fixpair_shape_local .and. .not. (c_associated(c%rows) .or. c_associated(c%species)), &
                "defaults are where the module looks for them")
   end subroutine
 
