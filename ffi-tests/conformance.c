@@ -82,7 +82,9 @@ static void scalars(const fixpair_exec *exec) {
     numbers[2] = (uint64_t)realisation.amplitude;
     numbers[3] = (uint64_t)realisation.phase;
     numbers[4] = (uint64_t)realisation.nyquist;
-    check_case("realisation_init", hash_bytes(HASH_START, numbers, 5 * sizeof *numbers));
+    numbers[5] = (uint64_t)realisation.selection;
+    numbers[6] = realisation.sample;
+    check_case("realisation_init", hash_bytes(HASH_START, numbers, 7 * sizeof *numbers));
     make_bricks(bricks);
     for (i = 0; i < BRICKS; i++) {
         const fixpair_brick *brick = &bricks[i];

@@ -22,7 +22,7 @@ Sum = ctypes.CFUNCTYPE(c_int32, c_void_p, ctypes.POINTER(c_double), c_size_t)
 Fft = structure("Fft", struct_size=c_size_t, context=c_void_p, forward=Pass, inverse=Pass, sum=Sum,
                 configuration=Brick, fourier=Brick, length=c_size_t)
 Realisation = structure("Realisation", struct_size=c_size_t, seed=c_uint64, scheme=c_int32, amplitude=c_int32,
-                        phase=c_int32, nyquist=c_int32)
+                        phase=c_int32, nyquist=c_int32, selection=c_int32, sample=ctypes.c_uint32)
 Cosmology = structure("Cosmology", struct_size=c_size_t, omega_m=c_double, omega_de=c_double, omega_r=c_double,
                       omega_b=c_double, h=c_double, n_s=c_double, w0=c_double, wa=c_double, t_cmb=c_double)
 Growth = structure("Growth", **dict.fromkeys("d f d2 f2 d3a f3a d3b f3b d3c f3c".split(), c_double))
@@ -71,6 +71,8 @@ CONFIGURATION, FOURIER = 0, 1
 NORMAL, FIXED, FIXED_TO_MEAN = 0, 1, 2
 ORIGINAL, INVERTED = 0, 1
 ZERO, FILLED = 0, 1
+NATIVE, NGENIC, FAST_PM = 0, 1, 2
+CUBE, SPHERE = 0, 1
 CMB, LSS = 0, 1
 POWER, TRANSFER, EISENSTEIN_HU, EISENSTEIN_HU_SMOOTH = 0, 1, 2, 3
 AS_GIVEN, SIGMA8, AMPLITUDE, A_S = 0, 1, 2, 3

@@ -276,7 +276,8 @@ static void refuse_bricks(fixpair_brick *brick) {
 static void refuse_realisations(fixpair_realisation *realisation) {
     REFUSED(FIXPAIR_ERROR_VERSION, realisation->struct_size = 0);
     REFUSED(FIXPAIR_ERROR_VERSION, realisation->struct_size++);
-    REFUSED(FIXPAIR_ERROR_CHOICE, realisation->scheme = 1);
+    REFUSED(FIXPAIR_ERROR_CHOICE, realisation->scheme = 3);
+    REFUSED(FIXPAIR_ERROR_CHOICE, realisation->selection = 2);
     REFUSED(FIXPAIR_ERROR_CHOICE, realisation->amplitude = 3);
     REFUSED(FIXPAIR_ERROR_CHOICE, realisation->amplitude = -1);
     REFUSED(FIXPAIR_ERROR_CHOICE, realisation->phase = 2);

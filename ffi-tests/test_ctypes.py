@@ -56,7 +56,7 @@ class Universe:
         self.case("philox4x32_10", block)
         r = made(Realisation, library.realisation_init, SEED)
         check(r.struct_size == ctypes.sizeof(r), "a realisation has the size of the header")
-        self.case("realisation_init", integers(r.seed, r.scheme, r.amplitude, r.phase, r.nyquist))
+        self.case("realisation_init", integers(r.seed, r.scheme, r.amplitude, r.phase, r.nyquist, r.selection, r.sample))
         for name, b in self.bricks().items():
             numbers = [b.n, b.space, *b.start, *b.count, *b.stride, self.reals(b)]
             self.case(f"brick.{name}", integers(*numbers))

@@ -115,6 +115,12 @@
 /* Philox4x32-10 at the signed mode number: a mode's numbers depend on the seed and on itself alone. */
 #define FIXPAIR_SCHEME_NATIVE 0
 
+/* RANLUX (ranlxd1) seeded for each (i, j) from a table: the scheme of N-GenIC, 2LPTic, 2LPTPNG and L-PICOLA. */
+#define FIXPAIR_SCHEME_NGENIC 1
+
+/* The same with FastPM's choices on the self-conjugate and Nyquist planes. */
+#define FIXPAIR_SCHEME_FASTPM 2
+
 /* Complex Gaussian modes. */
 #define FIXPAIR_AMPLITUDE_NORMAL 0
 
@@ -135,6 +141,12 @@
 
 /* They are modes like the others. */
 #define FIXPAIR_NYQUIST_FILLED 1
+
+/* Modes (i, j, l) with |i|, |j| and |l| at most floor(sample/2) are drawn. */
+#define FIXPAIR_SELECTION_CUBE 0
+
+/* Modes with i^2 + j^2 + l^2 at most floor(sample/2)^2 are drawn. */
+#define FIXPAIR_SELECTION_SPHERE 1
 
 /* f_NL of the potential in matter domination, as in studies of the microwave background: the usual one. */
 #define FIXPAIR_CONVENTION_CMB 0
@@ -420,7 +432,7 @@ typedef struct fixpair_realisation {
   size_t struct_size;
   /* Any number. */
   uint64_t seed;
-  /* FIXPAIR_SCHEME_NATIVE. */
+  /* FIXPAIR_SCHEME_NATIVE, _NGENIC or _FASTPM. */
   int32_t scheme;
   /* FIXPAIR_AMPLITUDE_NORMAL, _FIXED or _FIXED_TO_MEAN. */
   int32_t amplitude;
@@ -428,6 +440,13 @@ typedef struct fixpair_realisation {
   int32_t phase;
   /* FIXPAIR_NYQUIST_ZERO or _FILLED. */
   int32_t nyquist;
+  /* FIXPAIR_SELECTION_CUBE or _SPHERE: the modes outside are zero, in every scheme. */
+  int32_t selection;
+  /*
+   * Twice the largest mode number that is drawn (2LPTic's Nsample). 0 stands for the side of the mesh, with which a
+   * cube is all its modes.
+   */
+  uint32_t sample;
 } fixpair_realisation;
 
 /*
@@ -1192,7 +1211,7 @@ fixpair_status_t fixpair_fft_init_f32(struct fixpair_fft_f32 *fft,
  */
 
 /*
- * Fills a realisation: native scheme, normal amplitudes, original phases, Nyquist modes zero.
+ * Fills a realisation: native scheme, normal amplitudes, original phases, Nyquist modes zero, no other mode left out.
  *
  * Out: realisation
  * In:  seed

@@ -13,6 +13,10 @@ use crate::status::{Error, Result};
 
 /// Philox4x32-10 at the signed mode number: a mode's numbers depend on the seed and on itself alone.
 pub const FIXPAIR_SCHEME_NATIVE: i32 = 0;
+/// RANLUX (ranlxd1) seeded for each (i, j) from a table: the scheme of N-GenIC, 2LPTic, 2LPTPNG and L-PICOLA.
+pub const FIXPAIR_SCHEME_NGENIC: i32 = 1;
+/// The same with FastPM's choices on the self-conjugate and Nyquist planes.
+pub const FIXPAIR_SCHEME_FASTPM: i32 = 2;
 
 /// Complex Gaussian modes.
 pub const FIXPAIR_AMPLITUDE_NORMAL: i32 = 0;
@@ -31,6 +35,11 @@ pub const FIXPAIR_NYQUIST_ZERO: i32 = 0;
 /// They are modes like the others.
 pub const FIXPAIR_NYQUIST_FILLED: i32 = 1;
 
+/// Modes (i, j, l) with |i|, |j| and |l| at most floor(sample/2) are drawn.
+pub const FIXPAIR_SELECTION_CUBE: i32 = 0;
+/// Modes with i^2 + j^2 + l^2 at most floor(sample/2)^2 are drawn.
+pub const FIXPAIR_SELECTION_SPHERE: i32 = 1;
+
 /// One realisation of the Gaussian field. Same seed, same phases and same moduli over their r.m.s., whatever the cosmology,
 /// f_NL, redshift, precision, threads, decomposition, and for every mode that two meshes share, the mesh.
 #[repr(C)]
@@ -40,7 +49,7 @@ pub struct fixpair_realisation {
     pub struct_size: usize,
     /// Any number.
     pub seed: u64,
-    /// FIXPAIR_SCHEME_NATIVE.
+    /// FIXPAIR_SCHEME_NATIVE, _NGENIC or _FASTPM.
     pub scheme: i32,
     /// FIXPAIR_AMPLITUDE_NORMAL, _FIXED or _FIXED_TO_MEAN.
     pub amplitude: i32,
@@ -48,12 +57,17 @@ pub struct fixpair_realisation {
     pub phase: i32,
     /// FIXPAIR_NYQUIST_ZERO or _FILLED.
     pub nyquist: i32,
+    /// FIXPAIR_SELECTION_CUBE or _SPHERE: the modes outside are zero, in every scheme.
+    pub selection: i32,
+    /// Twice the largest mode number that is drawn (2LPTic's Nsample). 0 stands for the side of the mesh, with which a
+    /// cube is all its modes.
+    pub sample: u32,
 }
 
 impl fixpair_realisation {
     pub(super) fn new(seed: u64) -> Self {
         let struct_size = size_of::<Self>();
-        Self { struct_size, seed, scheme: 0, amplitude: 0, phase: 0, nyquist: 0 }
+        Self { struct_size, seed, scheme: 0, amplitude: 0, phase: 0, nyquist: 0, selection: 0, sample: 0 }
     }
 
     pub(super) fn check(&self) -> Result<Realisation> {
@@ -66,11 +80,13 @@ impl fixpair_realisation {
             amplitude: self.amplitude.try_into()?,
             phase: self.phase.try_into()?,
             nyquist: self.nyquist.try_into()?,
+            selection: self.selection.try_into()?,
+            sample: self.sample,
         })
     }
 }
 
-/// Fills a realisation: native scheme, normal amplitudes, original phases, Nyquist modes zero.
+/// Fills a realisation: native scheme, normal amplitudes, original phases, Nyquist modes zero, no other mode left out.
 ///
 /// Out: realisation
 /// In:  seed

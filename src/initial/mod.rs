@@ -19,4 +19,6 @@ pub mod third;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_third;
+#[cfg(test)]
 mod tests_whole;

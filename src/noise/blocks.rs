@@ -19,21 +19,78 @@ pub(super) const RAYLEIGH_MEAN: f64 = 0.886_226_925_452_758;
 /// sqrt(2/pi), the mean modulus of a standard normal number.
 pub(super) const NORMAL_MEAN: f64 = 0.797_884_560_802_865_4;
 
-/// What a mode depends on besides its number.
+/// What two uniforms become.
 #[derive(Clone, Copy)]
-pub(super) struct Draw {
-    key: [u32; 2],
+pub(super) struct Shape {
     amplitude: Amplitude,
     inverted: bool,
 }
 
+impl Shape {
+    pub(super) const fn new(realisation: &Realisation) -> Self {
+        Self { amplitude: realisation.amplitude, inverted: matches!(realisation.phase, Phase::Inverted) }
+    }
+
+    /// A complex mode of unit mean square.
+    #[inline(always)]
+    pub(super) fn complex(&self, u1: f64, u2: f64) -> [f64; 2] {
+        let modulus = match self.amplitude {
+            Amplitude::Normal => sqrt(neg_ln(u2)),
+            Amplitude::Fixed => 1.0,
+            Amplitude::FixedToMean => RAYLEIGH_MEAN,
+        };
+        let (sine, cosine) = sin_cos_turns(u1);
+        [modulus * cosine, modulus * sine].map(|x| if self.inverted { -x } else { x })
+    }
+
+    /// A self-conjugate mode: a real number, Normal of mean square `power`.
+    pub(super) fn real(&self, u1: f64, u2: f64, power: f64) -> [f64; 2] {
+        let cosine = sin_cos_turns(u1).1;
+        let sign = if cosine < 0.0 { -1.0 } else { 1.0 };
+        let x = match self.amplitude {
+            Amplitude::Normal => sqrt(2.0 * power * neg_ln(u2)) * cosine,
+            Amplitude::Fixed => sign,
+            Amplitude::FixedToMean => sign * NORMAL_MEAN,
+        };
+        if self.inverted { [-x, -0.0] } else { [x, 0.0] }
+    }
+
+    /// Real and imaginary parts of a block of complex modes.
+    #[inline(always)]
+    pub(super) fn block<const N: usize>(&self, u1: &[f64; N], u2: &[f64; N]) -> [[f64; N]; 2] {
+        let sign = if self.inverted { -1.0 } else { 1.0 };
+        let mut modulus = [sign; N];
+        match self.amplitude {
+            Amplitude::Normal => {
+                for lane in 0..N {
+                    modulus[lane] = neg_ln(u2[lane]);
+                }
+                sqrt_in_place(&mut modulus);
+                modulus = modulus.map(|x| sign * x);
+            }
+            Amplitude::Fixed => {}
+            Amplitude::FixedToMean => modulus = [sign * RAYLEIGH_MEAN; N],
+        }
+        let (mut re, mut im) = ([0.0; N], [0.0; N]);
+        for lane in 0..N {
+            let (sine, cosine) = sin_cos_turns(u1[lane]);
+            re[lane] = modulus[lane] * cosine;
+            im[lane] = modulus[lane] * sine;
+        }
+        [re, im]
+    }
+}
+
+/// What a mode of the native scheme depends on besides its number.
+#[derive(Clone, Copy)]
+pub(super) struct Draw {
+    key: [u32; 2],
+    shape: Shape,
+}
+
 impl Draw {
     pub(super) const fn new(realisation: &Realisation) -> Self {
-        Self {
-            key: key_of(realisation.seed),
-            amplitude: realisation.amplitude,
-            inverted: matches!(realisation.phase, Phase::Inverted),
-        }
+        Self { key: key_of(realisation.seed), shape: Shape::new(realisation) }
     }
 
     /// u1 in [0, 1) and u2 in (0, 1], multiples of 2^-53, of the mode (i, j, l).
@@ -53,26 +110,13 @@ impl Draw {
     #[inline(always)]
     pub(super) fn complex(&self, i: i32, j: i32, l: u32) -> [f64; 2] {
         let (u1, u2) = self.uniforms(i, j, u64::from(l));
-        let modulus = match self.amplitude {
-            Amplitude::Normal => sqrt(neg_ln(u2)),
-            Amplitude::Fixed => 1.0,
-            Amplitude::FixedToMean => RAYLEIGH_MEAN,
-        };
-        let (sine, cosine) = sin_cos_turns(u1);
-        [modulus * cosine, modulus * sine].map(|x| if self.inverted { -x } else { x })
+        self.shape.complex(u1, u2)
     }
 
     /// The self-conjugate mode (i, j, l): a real number of unit variance.
     pub(super) fn real(&self, i: i32, j: i32, l: u32) -> [f64; 2] {
         let (u1, u2) = self.uniforms(i, j, u64::from(l));
-        let cosine = sin_cos_turns(u1).1;
-        let sign = if cosine < 0.0 { -1.0 } else { 1.0 };
-        let x = match self.amplitude {
-            Amplitude::Normal => sqrt(2.0 * neg_ln(u2)) * cosine,
-            Amplitude::Fixed => sign,
-            Amplitude::FixedToMean => sign * NORMAL_MEAN,
-        };
-        if self.inverted { [-x, -0.0] } else { [x, 0.0] }
+        self.shape.real(u1, u2, 1.0)
     }
 
     /// The modes (i, j, first ..) with l between the self-conjugate planes, each times `colour[l^2]` if there is one.
@@ -100,25 +144,7 @@ impl Draw {
         for lane in 0..LANES {
             (u1[lane], u2[lane]) = self.uniforms(i, j, first + lane as u64);
         }
-        let sign = if self.inverted { -1.0 } else { 1.0 };
-        let mut modulus = [sign; LANES];
-        match self.amplitude {
-            Amplitude::Normal => {
-                for lane in 0..LANES {
-                    modulus[lane] = neg_ln(u2[lane]);
-                }
-                sqrt_in_place(&mut modulus);
-                modulus = modulus.map(|x| sign * x);
-            }
-            Amplitude::Fixed => {}
-            Amplitude::FixedToMean => modulus = [sign * RAYLEIGH_MEAN; LANES],
-        }
-        let (mut re, mut im) = ([0.0; LANES], [0.0; LANES]);
-        for lane in 0..LANES {
-            let (sine, cosine) = sin_cos_turns(u1[lane]);
-            re[lane] = modulus[lane] * cosine;
-            im[lane] = modulus[lane] * sine;
-        }
+        let [re, im] = self.shape.block(&u1, &u2);
         if let Some(colour) = colour {
             for (lane, mode) in out.iter_mut().enumerate() {
                 let l = first as usize + lane;

@@ -9,12 +9,16 @@
 
 mod blocks;
 mod field;
+mod ngenic;
 pub mod philox;
+pub mod ranlux;
 mod realisation;
+mod seeds;
 mod white;
 
 pub use field::{impose, unit_modes_from_field};
-pub use realisation::{Amplitude, Nyquist, Phase, Realisation, Scheme};
+pub use realisation::{Amplitude, Nyquist, Phase, Realisation, Scheme, Selection};
+pub use seeds::ngenic_seeds;
 pub use white::{white_modes, white_modes_coloured};
 
 #[cfg(test)]

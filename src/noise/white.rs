@@ -1,7 +1,8 @@
 //! The modes of a brick.
 
 use super::blocks::Draw;
-use super::realisation::{Nyquist, Realisation};
+use super::ngenic;
+use super::realisation::{Nyquist, Realisation, Scheme};
 use crate::exec::Exec;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
@@ -83,18 +84,25 @@ pub(super) fn draw<T: Real>(
     simd: Simd,
 ) -> Result<()> {
     brick.check_space(Space::Fourier)?;
+    brick.check_length(out)?;
+    match (realisation.scheme, realisation.nyquist) {
+        (Scheme::Native, _) => {}
+        // It has no such modes.
+        (Scheme::NGenIc, Nyquist::Filled) => return Err(Error::Choice),
+        (Scheme::NGenIc | Scheme::FastPm, _) => {
+            return ngenic::draw(out, brick, realisation, colour, exec, simd);
+        }
+    }
     let drawn = Draw::new(realisation);
     let n = brick.n();
     walk::walk::<T, 1, 0>(exec, brick, [out], [], &|run, [out], []| {
-        let row = Row {
-            half: (n / 2) as i32,
-            i: Brick::mode(n, run.index[0]) as i32,
-            j: Brick::mode(n, run.index[1]) as i32,
-            zero_nyquist: realisation.nyquist == Nyquist::Zero,
-            draw: drawn,
-            colour,
-        };
-        row.fill(run.index[2], out.as_chunks_mut().0, simd);
+        let [i, j] = [0, 1].map(|axis| Brick::mode(n, run.index[axis]));
+        let row = Row { half: (n / 2) as i32, i: i as i32, j: j as i32, draw: drawn, colour };
+        let out = out.as_chunks_mut().0;
+        let within = realisation.modes_along_l(n, i, j).saturating_sub(run.index[2]).min(out.len());
+        let (within, beyond) = out.split_at_mut(within);
+        row.fill(run.index[2], within, simd);
+        beyond.fill([T::ZERO; 2]);
     })
 }
 
@@ -103,7 +111,6 @@ struct Row<'a> {
     half: i32,
     i: i32,
     j: i32,
-    zero_nyquist: bool,
     draw: Draw,
     colour: Option<&'a [f64]>,
 }
@@ -112,10 +119,6 @@ impl Row<'_> {
     /// Modes l = `first ..`.
     fn fill<T: Real>(&self, first: usize, out: &mut [[T; 2]], simd: Simd) {
         let half = self.half as usize;
-        if self.zero_nyquist && (self.i == self.half || self.j == self.half) {
-            out.fill([T::ZERO; 2]);
-            return;
-        }
         // l = 0 and l = n/2 hold both members of pairs; between them each mode is drawn as it stands.
         let begin = usize::from(first == 0).min(out.len());
         let end = out.len().min(half - first.min(half)).max(begin);
@@ -151,8 +154,7 @@ impl Row<'_> {
         let (i, j, half) = (self.i, self.j, self.half);
         let own_negative = |m: i32| m == 0 || m == half;
         let negative = |m: i32| if own_negative(m) { m } else { -m };
-        let nyquist = i == half || j == half || l == half as u32;
-        let unit = if (i, j, l) == (0, 0, 0) || nyquist && self.zero_nyquist {
+        let unit = if (i, j, l) == (0, 0, 0) {
             return [T::ZERO; 2];
         } else if !own_negative(l as i32) {
             self.draw.complex(i, j, l)

@@ -8,6 +8,7 @@ pub(crate) mod dft;
 pub(crate) mod fof;
 pub(crate) mod force;
 pub(crate) mod kick;
+pub(crate) mod ngenic;
 pub(crate) mod power;
 pub(crate) mod transform;
 pub(crate) mod variance;
