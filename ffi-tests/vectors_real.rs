@@ -9,8 +9,8 @@ use fixpair::initial::conditions::{
 use fixpair::initial::lpt::{displacement, second_order_source};
 use fixpair::initial::modes::{copy_modes, scale_by_table};
 use fixpair::initial::particles::{Components, Step, displace};
-use fixpair::initial::shape::Shape;
 use fixpair::initial::png::{Local, add_local, add_local_scratch};
+use fixpair::initial::shape::Shape;
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{
     Amplitude, Nyquist, Phase, Realisation, impose, unit_modes_from_field, white_modes, white_modes_coloured,

@@ -2,9 +2,9 @@
 
 use fixpair::cosmology::Cosmology;
 use fixpair::fft::Fft3;
+use fixpair::initial::displacements::{Order, Work, displacements, rest_length};
 use fixpair::initial::particles::{Components, displace};
 use fixpair::initial::png::Local;
-use fixpair::initial::displacements::{Order, Work, displacements, rest_length};
 
 use fixpair::initial::realise::{Field, FieldWork, linear_density};
 use fixpair::initial::shape::Shape;
@@ -38,7 +38,8 @@ impl Start {
                 let mut density = vec![0.0; fft.length()];
                 let mut mesh = vec![0.0; fine.length()];
                 let mut partial = vec![[0.0]; fine.configuration().n()];
-                let work = FieldWork { mesh: &mut mesh, rest: &mut [], table: &mut [], partial: &mut partial };
+                let work =
+                    FieldWork { mesh: &mut mesh, rest: &mut [], table: &mut [], partial: &mut partial };
                 linear_density(&mut density, &field, fft, Some(fine), work, *exec)?;
                 Ok(Self { density })
             })

@@ -7,8 +7,8 @@ use super::cosmology::{FIXPAIR_CONVENTION_CMB, fixpair_cosmology, fixpair_linear
 use super::exec::{HostExec, fixpair_exec};
 use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
 use super::noise::fixpair_realisation;
-use super::species::{fixpair_species, optional_species};
 use super::particles::{Triple, components, fixpair_components_f32, fixpair_components_f64};
+use super::species::{fixpair_species, optional_species};
 use super::status::{code, fixpair_status_t};
 use crate::cosmology::{Convention, Cosmology};
 use crate::fft::Fft3;
@@ -67,7 +67,10 @@ pub struct fixpair_conditions {
 
 /// # Safety
 /// `pointer` is null or points to a hook that keeps its contract.
-pub(super) unsafe fn optional_fft<H: Hook>(border: &mut Border, pointer: *const H) -> Result<Option<HostFft<H::Real>>> {
+pub(super) unsafe fn optional_fft<H: Hook>(
+    border: &mut Border,
+    pointer: *const H,
+) -> Result<Option<HostFft<H::Real>>> {
     // SAFETY: the caller's promise.
     if pointer.is_null() { Ok(None) } else { unsafe { HostFft::new(border, pointer) }.map(Some) }
 }

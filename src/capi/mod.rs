@@ -44,6 +44,7 @@ pub mod species;
 pub mod spheres;
 pub mod stages;
 pub mod status;
+pub mod third;
 pub mod triangles;
 
 mod border;

@@ -64,8 +64,7 @@ unsafe fn checked<'a>(border: &mut Border, species: *const fixpair_species) -> R
             border.read(density, rows)?,
             border.read(velocity, rows)?,
         ];
-        let reference =
-            if reference.is_null() { None } else { Some(border.read(reference, rows)?) };
+        let reference = if reference.is_null() { None } else { Some(border.read(reference, rows)?) };
         Species::new(k, matter, density, velocity, reference)
     }
 }

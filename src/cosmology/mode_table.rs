@@ -113,7 +113,11 @@ pub(super) fn check(n: usize, box_size: f64, out: &[f64]) -> Result<f64> {
 }
 
 /// Entry 0 is 0; `body(m, piece)` fills the entries from m on.
-pub(super) fn fill(exec: &dyn Exec, out: &mut [f64], body: &(dyn Fn(usize, &mut [f64]) + Sync)) -> Result<()> {
+pub(super) fn fill(
+    exec: &dyn Exec,
+    out: &mut [f64],
+    body: &(dyn Fn(usize, &mut [f64]) + Sync),
+) -> Result<()> {
     let Some((mean, modes)) = out.split_first_mut() else { return Err(Error::Length) };
     *mean = 0.0;
     for_each_piece(exec, modes, PIECE, &|i, piece| body(1 + i * PIECE, piece))

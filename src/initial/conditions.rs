@@ -78,8 +78,7 @@ impl<'a> InitialConditions<'a> {
 
     fn check(&self) -> Result<()> {
         self.local.check()?;
-        let quadratic =
-            Quadratic { f_nl: self.local.f_nl, rows: self.shape, n_s: self.linear.n_s() };
+        let quadratic = Quadratic { f_nl: self.local.f_nl, rows: self.shape, n_s: self.linear.n_s() };
         quadratic.check()?;
         if !self.redshift.is_finite() || !self.box_size.is_finite() {
             return Err(Error::NotFinite);

@@ -122,7 +122,13 @@ pub fn rest_length<T: Real>(
     fine: Option<&(dyn Fft3<T> + '_)>,
 ) -> usize {
     match order {
-        Order::First => if species { 2 * apart(fft) } else { 0 },
+        Order::First => {
+            if species {
+                2 * apart(fft)
+            } else {
+                0
+            }
+        }
         Order::Second => (2 * apart(fft)).max(fine.map_or(0, Fft3::length)),
         Order::Third => (SOURCES + THIRD_ORDER_MESHES) * apart(fft),
     }
@@ -334,7 +340,14 @@ impl<T: Real> Fields<'_, T> {
     }
 
     /// i (n x C)_axis/|n|^2.
-    fn add_curl(&self, to: &mut [T], field: usize, axis: usize, modes: &Brick, exec: &dyn Exec) -> Result<()> {
+    fn add_curl(
+        &self,
+        to: &mut [T],
+        field: usize,
+        axis: usize,
+        modes: &Brick,
+        exec: &dyn Exec,
+    ) -> Result<()> {
         let Some((curl, scale)) = &self.curl else { return Ok(()) };
         let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
         add_modes(to, modes, curl[c], modes, &InverseGradient::new(b, scale[field]), exec)?;
