@@ -168,10 +168,10 @@ static int check_modes(const struct universe *universe, const double *library, c
     int failures = claim(result.wrong == 0, "%s: both draw the same %lu modes, besides %lu on the edge of a sphere", name,
                          (unsigned long)result.modes, (unsigned long)result.edge);
     /*
-     * An ulp is 2.2e-16. The phase, up to 2 pi, is rounded to 2 of them, and 2LPTic's pi added to it to flip to 4; sine, cosine
-     * and logarithm to 1 each; ln P, up to 20, to 8 of P, so to 4 of its root, and once more as T of alpha, and back.
+     * An ulp is 2.2e-16. The phase, up to 2 pi, is rounded to 2 of them, sine, cosine and logarithm to 1 each; ln P, up to 20, to
+     * 8 of P, so to 4 of its root; alpha is divided by and multiplied with, each to 4 more in T.
      */
-    return failures + claim(result.worst < 2e-15 + 2e-15, "%s: a mode differs by %.1e of itself at most", name, result.worst);
+    return failures + claim(result.worst < 4e-15, "%s: a mode differs by %.1e of itself at most", name, result.worst);
 }
 
 static double wrapped(double x, double box) {
