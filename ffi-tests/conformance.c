@@ -6,6 +6,8 @@
  */
 #define _POSIX_C_SOURCE 200112L
 
+#include <math.h>
+
 #include "hosts.h"
 
 /* NULL, the pool with 1, 2 and 5 threads, the host's own loop. */
@@ -208,6 +210,7 @@ static void tables(const fixpair_exec *exec) {
 }
 
 #include "conformance_bins.h"
+#include "conformance_species.h"
 #include "conformance_steps.h"
 #include "conformance_variance.h"
 
@@ -216,6 +219,8 @@ static void tables(const fixpair_exec *exec) {
 #define SUFFIX ".f32"
 #include "conformance_real.h"
 #include "conformance_shape.h"
+#include "conformance_initial.h"
+#include "conformance_third.h"
 #include "conformance_particles.h"
 #include "conformance_estimate.h"
 #include "conformance_gravity.h"
@@ -230,6 +235,8 @@ static void tables(const fixpair_exec *exec) {
 #define SUFFIX ".f64"
 #include "conformance_real.h"
 #include "conformance_shape.h"
+#include "conformance_initial.h"
+#include "conformance_third.h"
 #include "conformance_particles.h"
 #include "conformance_estimate.h"
 #include "conformance_gravity.h"
@@ -274,6 +281,11 @@ int main(int count, char **arguments) {
         shapes_f64(exec);
         universes_f32(exec);
         universes_f64(exec);
+        species_tables(exec);
+        beyond_second_order_f32(exec);
+        beyond_second_order_f64(exec);
+        third_order_f32(exec);
+        third_order_f64(exec);
         particles_and_meshes_f32(exec);
         particles_and_meshes_f64(exec);
         estimates_f32(exec);

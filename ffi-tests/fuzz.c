@@ -238,6 +238,7 @@ static void universes(double *data, void *scratch, size_t scratch_len, const fix
 
 #include "fuzz_estimate.h"
 #include "fuzz_gravity.h"
+#include "fuzz_initial.h"
 #include "fuzz_variance.h"
 
 int main(void) {
@@ -269,6 +270,7 @@ int main(void) {
         statistics(memory);
         if (round % 8 == 0) {
             universes(data, scratch, layout.size, &fft);
+            beginnings(data, memory, &fft);
             bispectra(data, memory, sums, &fft);
             runs(data, memory, &fft);
         }

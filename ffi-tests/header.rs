@@ -121,6 +121,8 @@ fn generate() -> String {
         "FREE_B_G".into(),
         "FREE_P".into(),
         "FREE_F_NL".into(),
+        "Shape".into(),
+        "Shape_ALL".into(),
     ]);
     let mut builder = cbindgen::Builder::new().with_config(config);
     for file in STRUCTS {

@@ -12,6 +12,7 @@ mod vectors;
 mod vectors_estimate;
 mod vectors_gravity;
 mod vectors_halos;
+mod vectors_initial;
 mod vectors_particles;
 mod vectors_real;
 mod vectors_shape;

@@ -346,6 +346,7 @@ static void rows_of_shapes(void) {
 }
 
 #include "refusals_bins.h"
+#include "refusals_species.h"
 #include "refusals_steps.h"
 #include "refusals_variance.h"
 #include "refusals_scatter.h"
@@ -363,6 +364,7 @@ static void rows_of_shapes(void) {
 #include "refusals_gravity.h"
 #include "refusals_run.h"
 #include "refusals_halos.h"
+#include "refusals_initial.h"
 #undef REAL
 #undef X
 #undef SUFFIX
@@ -377,6 +379,7 @@ static void rows_of_shapes(void) {
 #include "refusals_gravity.h"
 #include "refusals_run.h"
 #include "refusals_halos.h"
+#include "refusals_initial.h"
 
 int main(void) {
     t.memory = (unsigned char *)take(ARENA);
@@ -432,6 +435,9 @@ int main(void) {
     refuse_catalogues_f64();
     refuse_spheres_f32();
     refuse_spheres_f64();
+    species();
+    refuse_beyond_second_order_f32();
+    refuse_beyond_second_order_f64();
     give_back(t.memory);
     give_back(t.pristine);
     give_back(t.before);

@@ -21,6 +21,7 @@ use crate::native::folder;
 use crate::vectors_estimate::bin_cases;
 use crate::vectors_gravity::time_cases;
 use crate::vectors_halos::halo_scalars;
+use crate::vectors_initial::species_cases;
 use crate::vectors_particles::ghost_cases;
 use crate::vectors_real::real_cases;
 use crate::vectors_shape::shape_rows;
@@ -79,6 +80,7 @@ pub(crate) static VECTORS: LazyLock<PathBuf> = LazyLock::new(|| {
     let mut cases = Cases::default();
     scalar_cases(&mut cases);
     cosmology_cases(&mut cases);
+    species_cases(&mut cases);
     ghost_cases(&mut cases);
     bin_cases(&mut cases);
     time_cases(&mut cases);
@@ -168,7 +170,8 @@ fn cosmology_cases(cases: &mut Cases) {
     cases.add("expansion", Hash::new().doubles(&expansion.collect::<Vec<_>>()));
     let mut growth = vec![Growth::default(); times.len()];
     growth_many(&full(), &times, &mut growth).expect("growth");
-    let growth = growth.iter().fold(Hash::new(), |hash, g| hash.doubles(&[g.d, g.f, g.d2, g.f2]));
+    let members = |g: &Growth| [g.d, g.f, g.d2, g.f2, g.d3a, g.f3a, g.d3b, g.f3b, g.d3c, g.f3c];
+    let growth = growth.iter().fold(Hash::new(), |hash, g| hash.doubles(&members(g)));
     cases.add("growth_factors", growth);
     cases.add("growth_suppression", Hash::new().doubles(&[g_ratio(&full()).expect("g")]));
     let [k, power, transfer] = rows();

@@ -25,6 +25,7 @@ use crate::vectors::{
 use crate::vectors_estimate::estimate_cases;
 use crate::vectors_gravity::gravity_cases;
 use crate::vectors_halos::halo_cases;
+use crate::vectors_initial::initial_cases;
 use crate::vectors_particles::particle_cases;
 use crate::vectors_shape::shape_cases;
 
@@ -96,6 +97,7 @@ pub(crate) fn real_cases<T: Real>(cases: &mut Cases, suffix: &str) {
     for (name, order, fine, realisation, local) in conditions() {
         add(name, universe::<T>(order, fine, realisation, local));
     }
+    initial_cases::<T>(&mut add);
 }
 
 fn transform_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
@@ -257,7 +259,8 @@ fn universe<T: Real>(order: Order, fine: Option<usize>, realisation: Realisation
     })
 }
 
-fn particles<T: Real>(
+/// One call, on the lattice of the mesh.
+pub(crate) fn particles<T: Real>(
     conditions: &InitialConditions<'_>,
     fft: &mut dyn Fft3<T>,
     mut fine: Option<&mut dyn Fft3<T>>,

@@ -14,8 +14,8 @@ use crate::initial::third::{
 use crate::scratch::{Arena, Layout};
 use crate::status::Result;
 
-/// Scratch of fixpair_third_order_sources_f64: 12 meshes of fft->length reals, and 16 bytes for each of n/2 + 1, each array rounded up to
-/// 64 bytes. 96 bytes a cell (f32: 48), and rows' padding.
+/// Scratch of fixpair_third_order_sources_f64: 12 meshes of fft->length reals, and 16 bytes for each of n/2 + 1, n the side, each array
+/// rounded up to 64 bytes. 96 bytes a cell (f32: 48), and rows' padding.
 ///
 /// Out: scratch
 /// In:  fft
@@ -65,11 +65,11 @@ unsafe fn sources_scratch<H: Hook>(scratch: *mut Layout, fft: *const H) -> Resul
 /// fixpair_displacement_f64, and Psi3c_k = (D3c/D^3) i k x C/k^2 by fixpair_transverse_displacement_f64 (Bouchet et al. 1995, astro-ph/9406013;
 /// Michaux et al. 2021, arXiv:2008.09588); the D are those of fixpair_growth_factors.
 ///
-/// Out: second           len = fft->length reals: modes of S on fft->fourier
+/// Out: second           len reals, as many as fft->fourier needs or more: modes of S
 ///      determinant      the same for A
 ///      mixed            the same for B
 ///      curl_x, _y, _z   the same for the components of C
-/// In:  density          len reals: modes of delta on fft->fourier
+/// In:  density          the same for delta
 ///      fft              the transform
 ///      scratch          scratch_len bytes, see fixpair_third_order_sources_scratch_f64
 ///      exec             or NULL
