@@ -8,6 +8,7 @@ use super::exec::{HostExec, fixpair_exec};
 use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
 use super::noise::fixpair_realisation;
 use super::particles::{Triple, components, fixpair_components_f32, fixpair_components_f64};
+use super::shape::FIXPAIR_SHAPE_ROWS;
 use super::species::{fixpair_species, optional_species};
 use super::status::{code, fixpair_status_t};
 use crate::cosmology::{Convention, Cosmology};
@@ -20,9 +21,6 @@ use crate::initial::shape::{Shape, ShapeRow};
 use crate::real::Real;
 use crate::scratch::Layout;
 use crate::status::{Error, Result};
-
-/// The caller's own kernel: see fixpair_shape_row.
-pub const FIXPAIR_SHAPE_ROWS: i32 = 5;
 
 /// Zel'dovich displacements.
 pub const FIXPAIR_ORDER_FIRST: i32 = 1;
