@@ -74,7 +74,7 @@ fn patches_in_cpp_compile() {
     let source = format!(
         "#include <cmath>\n#include <cstring>\n#include <vector>\n#include <fixpair.h>\n
          #define NGENIC 256\n#define Terminate(...) throw fixpair_status_t(-1)\n
-         typedef float fft_complex[2];
+         typedef float fft_real, fft_complex[2];
          extern struct all {{ double BoxSize; int NgenicSeed, SphereMode, NSample; }} All;
          struct ngenic {{ size_t maxfftsize; double Dplus; struct {{ int slabstart_y, nslab_y; }} myplan;
          double ngenic_power_spec(double k); void ngenic_setup_modes_in_kspace(fft_complex *fft_of_grid); }};
