@@ -19,6 +19,12 @@ pub mod third;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_species;
+#[cfg(test)]
 mod tests_third;
+#[cfg(test)]
+mod tests_third_motion;
+#[cfg(test)]
+mod tests_third_sources;
 #[cfg(test)]
 mod tests_whole;

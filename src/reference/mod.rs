@@ -10,6 +10,7 @@ pub(crate) mod force;
 pub(crate) mod kick;
 pub(crate) mod ngenic;
 pub(crate) mod power;
+pub(crate) mod processes;
 pub(crate) mod transform;
 pub(crate) mod variance;
 pub(crate) mod white;

@@ -1,8 +1,7 @@
 //! The self-test passes good transforms in any layout, and catches each way of breaking the contract.
 
-use std::sync::{Barrier, Mutex};
-
 use super::*;
+use crate::reference::processes::together;
 
 /// What a hook may get wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,91 +145,11 @@ fn the_self_test_wants_an_array_of_the_hooks_length() {
     });
 }
 
-/// A process that holds some planes in configuration space and some transposed planes in Fourier space, as FFTW-MPI
-/// does. All processes meet around one whole mesh.
-struct Process<'a> {
-    whole: &'a Mutex<Vec<f64>>,
-    all: &'a Barrier,
-    first: bool,
-    cells: Brick,
-    modes: Brick,
-}
-
-impl Process<'_> {
-    fn copy(brick: &Brick, local: &mut [f64], whole: &mut [f64], to_whole: bool) {
-        let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
-        let (n, width) = (brick.n(), brick.space().width());
-        let row = (n + 2) / width;
-        for i in 0..brick.elements() {
-            let [x, y, z] = [i / (count[1] * count[2]), i / count[2] % count[1], i % count[2]];
-            let here = width * (x * stride[0] + y * stride[1] + z * stride[2]);
-            let there = width * (((start[0] + x) * n + start[1] + y) * row + start[2] + z);
-            for part in 0..width {
-                if to_whole {
-                    whole[there + part] = local[here + part];
-                } else {
-                    local[here + part] = whole[there + part];
-                }
-            }
-        }
-    }
-
-    fn together(&self, data: &mut [f64], forward: bool) -> Result<()> {
-        let (from, to) = if forward { (&self.cells, &self.modes) } else { (&self.modes, &self.cells) };
-        Self::copy(from, data, &mut self.whole.lock().unwrap(), true);
-        self.all.wait();
-        if self.first {
-            with_transform::<f64, _>(self.cells.n(), 0, Simd::detect(), &Serial, |fft| {
-                let mut whole = self.whole.lock().unwrap();
-                if forward { fft.forward(&mut whole) } else { fft.inverse(&mut whole) }
-            })?;
-        }
-        self.all.wait();
-        Self::copy(to, data, &mut self.whole.lock().unwrap(), false);
-        self.all.wait();
-        Ok(())
-    }
-}
-
-impl Fft3<f64> for Process<'_> {
-    fn configuration(&self) -> &Brick {
-        &self.cells
-    }
-
-    fn fourier(&self) -> &Brick {
-        &self.modes
-    }
-
-    fn length(&self) -> usize {
-        self.cells.reals().max(self.modes.reals())
-    }
-
-    fn forward(&mut self, data: &mut [f64]) -> Result<()> {
-        self.together(data, true)
-    }
-
-    fn inverse(&mut self, data: &mut [f64]) -> Result<()> {
-        self.together(data, false)
-    }
-}
-
 #[test]
 fn the_self_test_passes_slabs_with_transposed_modes() {
-    let n = 10;
-    let whole = Mutex::new(vec![0.0; n * n * (n + 2)]);
-    let all = Barrier::new(3);
     // The third process holds nothing.
-    let planes = [(0, 7), (7, 3), (10, 0)];
-    std::thread::scope(|scope| {
-        for (first, count) in planes {
-            let (whole, all) = (&whole, &all);
-            scope.spawn(move || {
-                let cells = Brick::slab(n, Space::Configuration, first, count).unwrap();
-                let modes = Brick::transposed_slab(n, first, count).unwrap();
-                let mut process = Process { whole, all, first: first == 0, cells, modes };
-                let mut data = vec![0.0; process.length()];
-                assert_eq!(self_test(&mut process, &mut data), Ok(()));
-            });
-        }
+    together(10, &[(0, 7), (7, 3), (10, 0)], &|process| {
+        let mut data = vec![0.0; process.length()];
+        assert_eq!(self_test(process, &mut data), Ok(()));
     });
 }
