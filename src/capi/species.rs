@@ -33,7 +33,8 @@ pub struct fixpair_species {
     pub matter: *const f64,
     /// T_s of the species: T_m itself, or that of matter without neutrinos, if there is but one.
     pub density: *const f64,
-    /// V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or _baryon times k^2 in the unit of its other columns. CLASS: -theta_s/(a H).
+    /// V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or _baryon, as its other columns stand. CLASS: theta_s/(a H) of the
+    /// Newtonian gauge beside -d_s, for columns are positive.
     pub velocity: *const f64,
     /// What the linear spectrum, scaled back with D(a) of the background, stands for: T_m(k, z = 0) D(a). Then growth that depends on k is
     /// accounted for, and modes of total matter are T_m(k, a). NULL for T_m itself: growth as of the background.

