@@ -27,6 +27,12 @@ mod tests_shapes_estimate;
 #[cfg(test)]
 mod tests_shapes_templates;
 #[cfg(test)]
+mod tests_species;
+#[cfg(test)]
 mod tests_third;
+#[cfg(test)]
+mod tests_third_motion;
+#[cfg(test)]
+mod tests_third_sources;
 #[cfg(test)]
 mod tests_whole;

@@ -62,6 +62,25 @@ impl<'a, T: Real> Part<'a, T> {
     }
 }
 
+/// Runs `body` in one thread for each share of planes, (first plane, planes): slabs of cells, transposed slabs of modes, as FFTW-MPI deals them out.
+pub(crate) fn together<T: Real>(
+    n: usize,
+    planes: &[(usize, usize)],
+    body: &(dyn Fn(&mut Part<'_, T>) + Sync),
+) {
+    let meeting = Meeting::<T>::new(n, planes.len());
+    std::thread::scope(|scope| {
+        for (rank, &(first, count)) in planes.iter().enumerate() {
+            let meeting = &meeting;
+            scope.spawn(move || {
+                let cells = Brick::slab(n, Space::Configuration, first, count).unwrap();
+                let modes = Brick::transposed_slab(n, first, count).unwrap();
+                body(&mut Part::new(meeting, rank == 0, cells, modes));
+            });
+        }
+    });
+}
+
 /// Where each element of a brick lies in its array and in the whole mesh, in reals.
 fn places(brick: &Brick) -> impl Iterator<Item = (usize, usize)> {
     let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
