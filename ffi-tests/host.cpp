@@ -358,8 +358,8 @@ void two_ranks() {
 
 #include "host_estimate.h"
 #include "host_gravity.h"
-#include "host_initial.h"
 #include "host_shape.h"
+#include "host_initial.h"
 #include "host_variance.h"
 
 /* A few refusals, as a host in C++ meets them: as exceptions, with vectors untouched. */
@@ -399,10 +399,10 @@ int main(int count, char **arguments) {
     for (const fixpair_exec *run : {&exec, static_cast<const fixpair_exec *>(nullptr)}) {
         one_process<float>(run);
         one_process<double>(run);
-        beyond_second_order<float>(run);
-        beyond_second_order<double>(run);
         shapes<float>(run);
         shapes<double>(run);
+        beyond_second_order<float>(run);
+        beyond_second_order<double>(run);
         estimates<float>(run);
         estimates<double>(run);
         runs<float>(run);

@@ -580,8 +580,8 @@ typedef struct fixpair_species {
   /* T_s of the species: T_m itself, or that of matter without neutrinos, if there is but one. */
   const double *density;
   /*
-   * V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it is, for all its columns are over k^2.
-   * CLASS: -theta_s/(a H), theta_s of the Newtonian gauge, or theta_s + alpha k^2 of the synchronous; its columns are negative: change all signs.
+   * V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it stands beside the other columns.
+   * CLASS: theta_s/(a H) of the Newtonian gauge, or (theta_s + alpha k^2)/(a H) of the synchronous, beside -d_s, for columns are positive.
    */
   const double *velocity;
   /*

@@ -18,7 +18,7 @@ impl Ranlxd1 {
         // GSL asks its host for the functions of a CBLAS, which its generators do not call.
         let names = ["libgsl.so.27", "libgsl.so.28", "libgsl.so.25", "libgsl.so"];
         // SAFETY: GSL has no initialisers.
-        let library = names.iter().find_map(|name| unsafe { Library::new(name) }.ok())?;
+        let library = names.into_iter().find_map(|name| unsafe { Library::new(name) }.ok())?;
         // SAFETY: the types are those of gsl_rng.h: a pointer to the kind of generator, and functions of a generator.
         unsafe {
             let kind = *library.get::<*const *const c_void>(b"gsl_rng_ranlxd1").ok()?;

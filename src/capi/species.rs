@@ -34,8 +34,8 @@ pub struct fixpair_species {
     pub matter: *const f64,
     /// T_s of the species: T_m itself, or that of matter without neutrinos, if there is but one.
     pub density: *const f64,
-    /// V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it is, for all its columns are over k^2.
-    /// CLASS: -theta_s/(a H), theta_s of the Newtonian gauge, or theta_s + alpha k^2 of the synchronous; its columns are negative: change all signs.
+    /// V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it stands beside the other columns.
+    /// CLASS: theta_s/(a H) of the Newtonian gauge, or (theta_s + alpha k^2)/(a H) of the synchronous, beside -d_s, for columns are positive.
     pub velocity: *const f64,
     /// What the linear spectrum, scaled back with D(a) of the background, stands for: T_m(k, z = 0) D(a). Then growth that depends on k is
     /// accounted for, and modes of total matter are T_m(k, a). NULL for T_m itself: growth as of the background.

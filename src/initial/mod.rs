@@ -19,12 +19,20 @@ pub mod third;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
+mod tests_parts;
+#[cfg(test)]
 mod tests_shapes;
 #[cfg(test)]
 mod tests_shapes_estimate;
 #[cfg(test)]
 mod tests_shapes_templates;
 #[cfg(test)]
+mod tests_species;
+#[cfg(test)]
 mod tests_third;
+#[cfg(test)]
+mod tests_third_motion;
+#[cfg(test)]
+mod tests_third_sources;
 #[cfg(test)]
 mod tests_whole;

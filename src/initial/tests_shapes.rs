@@ -1,6 +1,6 @@
 //! The engine of separable kernels against direct sums, and what it leaves alone.
 
-use std::sync::{Barrier, Mutex};
+use std::sync::Mutex;
 use std::vec;
 use std::vec::Vec;
 
@@ -13,7 +13,7 @@ use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::reference::built::{serial, transform};
 use crate::reference::convolution::Dense;
-use crate::reference::processes::{Process, gather, scatter};
+use crate::reference::parts::{Meeting, Part, gather, scatter};
 use crate::reference::shape::product;
 use crate::reference::transform::Slow;
 use crate::status::{Error, Result};
@@ -240,18 +240,18 @@ fn slabs_hold_the_modes_of_the_whole() {
     {
         let term = Quadratic { f_nl: 0.5, rows: shape.rows(), n_s: 0.96 };
         let m = if dealiased { side } else { n };
-        let expected = apply(&phi, &whole(n), &term, &mut Slow::new(m), &Serial).unwrap();
-        let (meeting, all) = (Mutex::new(vec![0.0; m * m * (m + 2)]), Barrier::new(2));
+        let expected = apply(&phi, &whole(n), &term, &mut serial::<f64>(m), &Serial).unwrap();
+        let meeting = Meeting::new(m, 2);
         let result = Mutex::new(vec![0.0; phi.len()]);
         std::thread::scope(|scope| {
             for [own, work] in rows {
-                let (meeting, all, phi, result, term) = (&meeting, &all, &phi, &result, &term);
+                let (meeting, phi, result, term) = (&meeting, &phi, &result, &term);
                 scope.spawn(move || {
                     let brick = Brick::transposed_slab(n, own.0, own.1).unwrap();
                     let (first, count) = if dealiased { work } else { own };
                     let cells = Brick::slab(m, Space::Configuration, first, count).unwrap();
                     let modes = Brick::transposed_slab(m, first, count).unwrap();
-                    let mut process = Process { whole: meeting, all, first: first == 0, cells, modes };
+                    let mut process = Part::new(meeting, first == 0, cells, modes);
                     let mut part = vec![0.0; brick.reals()];
                     scatter(&brick, &mut part, phi);
                     let out = apply(&part, &brick, term, &mut process, &Serial).unwrap();

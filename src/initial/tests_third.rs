@@ -1,18 +1,19 @@
-//! Claims about the third order.
+//! The sources of the third order in a closed form.
 
 use core::f64::consts::TAU;
 use std::vec;
 use std::vec::Vec;
 
 use super::shifted::half_cells_length;
-use super::third::{SECOND_ORDER_MESHES, THIRD_ORDER_MESHES, second_order_exact, third_order_sources};
-use crate::exec::Serial;
+use super::third::{THIRD_ORDER_MESHES, second_order_exact, third_order_sources};
+use crate::exec::{Exec, Serial};
 use crate::fft::Fft3;
 use crate::mesh::{Brick, Space};
+use crate::real::Real;
 use crate::reference::transform::Slow;
 
 /// A field given on the cells, as modes.
-fn modes_of(n: usize, field: impl Fn([f64; 3]) -> f64) -> Vec<f64> {
+pub(super) fn modes_of(n: usize, field: impl Fn([f64; 3]) -> f64) -> Vec<f64> {
     let mut fft = Slow::new(n);
     let cells = Brick::whole(n, Space::Configuration).unwrap();
     let stride = cells.stride();
@@ -29,22 +30,24 @@ fn modes_of(n: usize, field: impl Fn([f64; 3]) -> f64) -> Vec<f64> {
     data
 }
 
-/// S, A, B and C of a density.
-fn sources(density: &[f64], n: usize) -> [Vec<f64>; 6] {
-    let mut fft = Slow::new(n);
-    let length = Fft3::<f64>::length(&fft);
-    let mut table = vec![[0.0; 2]; half_cells_length(n)];
-    let mut out: [Vec<f64>; 6] = core::array::from_fn(|_| vec![f64::NAN; length]);
-    let mut meshes: Vec<Vec<f64>> = (0..THIRD_ORDER_MESHES).map(|_| vec![f64::NAN; length]).collect();
+/// S, A, B and C of a density, by a transform.
+pub(super) fn sources_by<T: Real>(density: &[T], fft: &mut dyn Fft3<T>, exec: &dyn Exec) -> [Vec<T>; 6] {
+    let length = fft.length();
+    let mut table = vec![[0.0; 2]; half_cells_length(fft.configuration().n())];
+    let mut out: [Vec<T>; 6] = core::array::from_fn(|_| vec![T::from_f64(f64::NAN); length]);
+    let mut meshes: [Vec<T>; THIRD_ORDER_MESHES] =
+        core::array::from_fn(|_| vec![T::from_f64(f64::NAN); length]);
     let [second, third @ ..] = &mut out;
-    let mut six = meshes.iter_mut().map(Vec::as_mut_slice);
-    let six: [&mut [f64]; SECOND_ORDER_MESHES] = core::array::from_fn(|_| six.next().unwrap());
-    second_order_exact(second, density, &mut fft, six, &mut table, &Serial).unwrap();
-    let mut twelve = meshes.iter_mut().map(Vec::as_mut_slice);
-    let twelve = core::array::from_fn(|_| twelve.next().unwrap());
+    let [a, b, c, d, e, f, ..] = meshes.each_mut().map(Vec::as_mut_slice);
+    second_order_exact(second, density, fft, [a, b, c, d, e, f], &mut table, exec).unwrap();
+    let twelve = meshes.each_mut().map(Vec::as_mut_slice);
     let third = third.each_mut().map(Vec::as_mut_slice);
-    third_order_sources(third, density, second, &mut fft, twelve, &mut table, &Serial).unwrap();
+    third_order_sources(third, density, second, fft, twelve, &mut table, exec).unwrap();
     out
+}
+
+fn sources(density: &[f64], n: usize) -> [Vec<f64>; 6] {
+    sources_by(density, &mut Slow::new(n), &Serial)
 }
 
 /// Modes inside the Nyquist planes; what is kept elsewhere is no mode.

@@ -29,9 +29,9 @@ use crate::real::Real;
 use crate::reference::built::{memory, serial};
 use crate::status::Error;
 
-const BOX: f64 = 1000.0;
+pub(super) const BOX: f64 = 1000.0;
 
-fn conditions(realisation: Realisation, f_nl: f64) -> InitialConditions<'static> {
+pub(super) fn conditions(realisation: Realisation, f_nl: f64) -> InitialConditions<'static> {
     let cosmology = Cosmology::goliat();
     let fit = EisensteinHu::new(&cosmology, Wiggles::With).unwrap();
     let linear = Linear::from_eisenstein_hu(fit, cosmology.n_s, 1.0).unwrap();
@@ -49,12 +49,12 @@ fn conditions(realisation: Realisation, f_nl: f64) -> InitialConditions<'static>
     }
 }
 
-fn realisation(seed: u64, amplitude: Amplitude, phase: Phase) -> Realisation {
+pub(super) fn realisation(seed: u64, amplitude: Amplitude, phase: Phase) -> Realisation {
     Realisation { amplitude, phase, ..Realisation::new(seed) }
 }
 
 /// sqrt(P_Phi/V) and alpha by |n|^2.
-fn tables(n: usize) -> (Vec<f64>, Vec<f64>) {
+pub(super) fn tables(n: usize) -> (Vec<f64>, Vec<f64>) {
     let poisson = conditions(Realisation::new(0), 0.0).poisson().unwrap();
     let mut potential = vec![0.0; mode_table_length(n).unwrap()];
     let mut alpha = potential.clone();
@@ -64,7 +64,7 @@ fn tables(n: usize) -> (Vec<f64>, Vec<f64>) {
 }
 
 /// The modes of delta, products taken on a mesh of 3/2 the side.
-fn density<T: Real>(n: usize, realisation: Realisation, f_nl: f64) -> Vec<T> {
+pub(super) fn density<T: Real>(n: usize, realisation: Realisation, f_nl: f64) -> Vec<T> {
     let (potential_amplitude, transfer) = tables(n);
     let (mut fft, mut fine) = (serial::<T>(n), serial::<T>(3 * n / 2));
     let mut out = vec![T::ZERO; fft.length()];
@@ -279,7 +279,7 @@ fn bispectrum_of_the_density_returns_the_input_f_nl() {
     }
 }
 
-fn particles<T: Real>(
+pub(super) fn particles<T: Real>(
     n: usize,
     conditions: &InitialConditions<'_>,
     exec: &dyn Exec,

@@ -34,6 +34,27 @@ impl Dense {
         dense
     }
 
+    /// A field from a rule for its modes.
+    pub(crate) fn from_modes(half: i64, value: impl Fn([i64; 3]) -> [f64; 2]) -> Self {
+        let mut dense = Self::zero(half);
+        for mode in Self::modes(half) {
+            let place = dense.place(mode);
+            dense.values[place] = value(mode);
+        }
+        dense
+    }
+
+    /// Modes of a whole mesh of side `n`, rows of n/2 + 1 modes; those that the mesh alone has are zero.
+    pub(crate) fn to_mesh(&self, n: usize) -> Vec<f64> {
+        let mut data = vec![0.0; n * n * (n + 2)];
+        for [i, j, l] in Self::modes(self.half).filter(|mode| mode[2] >= 0) {
+            let index = |m: i64| m.rem_euclid(n as i64) as usize;
+            let at = 2 * ((index(i) * n + index(j)) * (n / 2 + 1) + l as usize);
+            data[at..at + 2].copy_from_slice(&self.at([i, j, l]));
+        }
+        data
+    }
+
     fn place(&self, [i, j, l]: [i64; 3]) -> usize {
         let side = 2 * self.half + 1;
         (((i + self.half) * side + j + self.half) * side + l + self.half) as usize
@@ -43,7 +64,7 @@ impl Dense {
         if mode.iter().any(|m| m.abs() > self.half) { [0.0; 2] } else { self.values[self.place(mode)] }
     }
 
-    fn modes(half: i64) -> impl Iterator<Item = [i64; 3]> {
+    pub(crate) fn modes(half: i64) -> impl Iterator<Item = [i64; 3]> {
         let range = move || -half..=half;
         range().flat_map(move |i| range().flat_map(move |j| range().map(move |l| [i, j, l])))
     }

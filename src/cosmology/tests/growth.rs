@@ -7,7 +7,7 @@ use crate::status::Error;
 
 /// D, f, D2, f2 at a = 0.01, 1/33, 0.1, 0.5 and 1 by another program: scipy 1.17's `solve_ivp`, DOP853 at a tolerance of 3e-14, for
 /// (D, D', D2, D2') from a = 1e-10 (without radiation) or y = 1e-9 (with it).
-const SCIPY: [(Cosmology, [[f64; 4]; 5]); 6] = {
+pub(super) const SCIPY: [(Cosmology, [[f64; 4]; 5]); 6] = {
     const GOLIAT: Cosmology = Cosmology::goliat();
     [
         (

@@ -3,9 +3,11 @@
 mod background;
 mod eisenstein_hu;
 mod growth;
+mod growth_third;
 mod mode_table;
 mod poisson;
 mod power;
+mod species;
 mod table;
 
 use std::vec::Vec;

@@ -1,9 +1,7 @@
 //! The self-test passes good transforms in any layout, and catches each way of breaking the contract.
 
-use std::sync::{Barrier, Mutex};
-
 use super::*;
-use crate::reference::processes::Process;
+use crate::reference::parts::together;
 
 /// What a hook may get wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,21 +147,9 @@ fn the_self_test_wants_an_array_of_the_hooks_length() {
 
 #[test]
 fn the_self_test_passes_slabs_with_transposed_modes() {
-    let n = 10;
-    let whole = Mutex::new(vec![0.0; n * n * (n + 2)]);
-    let all = Barrier::new(3);
     // The third process holds nothing.
-    let planes = [(0, 7), (7, 3), (10, 0)];
-    std::thread::scope(|scope| {
-        for (first, count) in planes {
-            let (whole, all) = (&whole, &all);
-            scope.spawn(move || {
-                let cells = Brick::slab(n, Space::Configuration, first, count).unwrap();
-                let modes = Brick::transposed_slab(n, first, count).unwrap();
-                let mut process = Process { whole, all, first: first == 0, cells, modes };
-                let mut data = vec![0.0; process.length()];
-                assert_eq!(self_test(&mut process, &mut data), Ok(()));
-            });
-        }
+    together::<f64>(10, &[(0, 7), (7, 3), (10, 0)], &|process| {
+        let mut data = vec![0.0; process.length()];
+        assert_eq!(self_test(process, &mut data), Ok(()));
     });
 }

@@ -8,7 +8,9 @@ mod force;
 mod interlacing;
 mod kicks;
 mod pair_force;
+mod pre_initial;
 mod regions;
+mod third;
 
 use std::vec;
 use std::vec::Vec;
