@@ -187,9 +187,6 @@
 /* V_s/T_m: from modes of total matter to v_s/(a H i k/k^2). */
 #define FIXPAIR_RATIO_VELOCITY 2
 
-/* The caller's own kernel: see fixpair_shape_row. */
-#define FIXPAIR_SHAPE_ROWS 5
-
 /* Zel'dovich displacements. */
 #define FIXPAIR_ORDER_FIRST 1
 
@@ -198,6 +195,24 @@
 
 /* Third order, longitudinal and transverse, whose products never alias. */
 #define FIXPAIR_ORDER_THIRD 3
+
+/* The local shape: Phi_G^2. */
+#define FIXPAIR_SHAPE_LOCAL 0
+
+/* The equilateral template. */
+#define FIXPAIR_SHAPE_EQUILATERAL 1
+
+/* The orthogonal template of the CMB. */
+#define FIXPAIR_SHAPE_ORTHOGONAL 2
+
+/* The orthogonal template whose squeezed limit is right, as halos need it. */
+#define FIXPAIR_SHAPE_ORTHOGONAL_LSS 3
+
+/* The folded (enfolded) template. */
+#define FIXPAIR_SHAPE_FOLDED 4
+
+/* The caller's own kernel, in fixpair_conditions. */
+#define FIXPAIR_SHAPE_ROWS 5
 
 /* Nearest grid point: p = 1. */
 #define FIXPAIR_WINDOW_NGP 1
@@ -565,8 +580,8 @@ typedef struct fixpair_species {
   /* T_s of the species: T_m itself, or that of matter without neutrinos, if there is but one. */
   const double *density;
   /*
-   * V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it is, for all its columns are over k^2.
-   * CLASS: -theta_s/(a H), theta_s of the Newtonian gauge, or theta_s + alpha k^2 of the synchronous; its columns are negative: change all signs.
+   * V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it stands beside the other columns.
+   * CLASS: theta_s/(a H) of the Newtonian gauge, or (theta_s + alpha k^2)/(a H) of the synchronous, beside -d_s, for columns are positive.
    */
   const double *velocity;
   /*
@@ -1969,6 +1984,85 @@ fixpair_status_t fixpair_displacement_f32(float *psi,
                                           double scale,
                                           const struct fixpair_fft_f32 *fft,
                                           const struct fixpair_exec *exec);
+
+/*
+ * Shapes of primordial non-Gaussianity
+ * ====================================
+ */
+
+/*
+ * Copies the rows of a shape: to see them, to change them, or to add others.
+ *
+ * Out: rows   the first `count` of rows_len; no shape has more than 8
+ *      count
+ * In:  shape  FIXPAIR_SHAPE_LOCAL, _EQUILATERAL, _ORTHOGONAL, _ORTHOGONAL_LSS or _FOLDED
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _CHOICE, _LENGTH for too few rows; `count` is then written all the same
+ */
+fixpair_status_t fixpair_shape_rows(struct fixpair_shape_row *rows,
+                                    size_t rows_len,
+                                    size_t *count,
+                                    int32_t shape);
+
+/*
+ * Scratch of fixpair_add_shape_f64: two meshes of work->length reals, one of the reals of `brick`, and 8 bytes for each |n|^2 up to
+ * 3 (n/2)^2, each array rounded up to 64 bytes. With a `work` of 3/2 the side 63 bytes a cell (f32: 32).
+ *
+ * Out: scratch
+ * In:  brick, work  as fixpair_add_shape_f64
+ * Returns: 0, FIXPAIR_ERROR_NULL, _OVERFLOW, or why the brick or the hook is refused
+ */
+fixpair_status_t fixpair_add_shape_scratch_f64(struct fixpair_layout *scratch,
+                                               const struct fixpair_brick *brick,
+                                               const struct fixpair_fft_f64 *work);
+
+/* fixpair_add_shape_scratch_f64 in single precision. */
+fixpair_status_t fixpair_add_shape_scratch_f32(struct fixpair_layout *scratch,
+                                               const struct fixpair_brick *brick,
+                                               const struct fixpair_fft_f32 *work);
+
+/*
+ * Quadratic primordial non-Gaussianity, in place: Phi_G -> Phi_G + f_nl sum over rows of c X_out[(X_a Phi_G)(X_b Phi_G)], without its mean.
+ *
+ * (X_s f)_k is |n|^(e s) f_k, e = (4 - n_s)/3, n = k L/(2 pi): to a factor P_Phi(k)^(-s/3) f_k. The exponents of a row sum to 0. Apply it to the
+ * modes of Phi, after fixing and inverting and before alpha. The mean stays zero, modes with a mode number n/2 receive nothing, and f_nl = 0 or
+ * no rows change no bit. See docs/shapes.md for the rows, their bispectra and their signs.
+ *
+ * In/Out: phi      phi_len reals: Phi_G, then Phi; untouched by every error
+ * In:     brick    of Fourier space, side n
+ *         f_nl
+ *         n_s      tilt: P_Phi is proportional to k^(n_s - 4)
+ *         rows     rows_len rows; fixpair_shape_rows has those of the usual templates
+ *         work     transform on which products are taken: of side n (they alias), or of side 3n/2 or more (exact)
+ *         scratch  scratch_len bytes, see fixpair_add_shape_scratch_f64
+ *         exec     or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _SCRATCH, _HOOK, _BRICK for a side between n and 3n/2, _RANGE for
+ *          |n_s| above 10, for exponents above 8, that do not sum to 0 within 1e-12, or with n^|e s| above 1e18
+ * Cost: transforms of work: local 2, equilateral, orthogonal and folded 7, orthogonal LSS 14
+ */
+fixpair_status_t fixpair_add_shape_f64(double *phi,
+                                       size_t phi_len,
+                                       const struct fixpair_brick *brick,
+                                       double f_nl,
+                                       double n_s,
+                                       const struct fixpair_shape_row *rows,
+                                       size_t rows_len,
+                                       const struct fixpair_fft_f64 *work,
+                                       void *scratch,
+                                       size_t scratch_len,
+                                       const struct fixpair_exec *exec);
+
+/* fixpair_add_shape_f64 in single precision. */
+fixpair_status_t fixpair_add_shape_f32(float *phi,
+                                       size_t phi_len,
+                                       const struct fixpair_brick *brick,
+                                       double f_nl,
+                                       double n_s,
+                                       const struct fixpair_shape_row *rows,
+                                       size_t rows_len,
+                                       const struct fixpair_fft_f32 *work,
+                                       void *scratch,
+                                       size_t scratch_len,
+                                       const struct fixpair_exec *exec);
 
 /*
  * Third order
