@@ -6,7 +6,6 @@
 //! Peers (whole programs, one core, CPU seconds, start-up and output included): 2LPTPNG at 256^3, f64, local f_NL: 11.8;
 //! monofonIC, dealiased: 27.9 in f64 and 21.2 in f32. Memory: 122 bytes a cell for 2LPTPNG; the bench prints ours.
 
-use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -15,23 +14,23 @@ use fixpair::cosmology::{
     potential_amplitude_table,
 };
 use fixpair::exec::{Exec, Serial, Threads};
-use fixpair::fft::{Fft3, Tables, Transform, next_side, recommended_padding};
-use fixpair::initial::conditions::{
-    InitialConditions, Order, initial_conditions, initial_conditions_scratch,
-};
+use fixpair::fft::{Fft3, Tables};
+use fixpair::initial::conditions::{InitialConditions, Order};
 use fixpair::initial::lpt::{displacement, second_order_source};
 use fixpair::initial::modes::scale_by_table;
 use fixpair::initial::particles::{Components, Step, displace};
 use fixpair::initial::png::{Local, add_local};
 use fixpair::initial::shape::Shape;
-use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{Realisation, white_modes_coloured};
 use fixpair::real::Real;
 
 #[path = "../examples/common/memory.rs"]
 mod memory;
+#[path = "common/one_call.rs"]
+mod one_call;
 
 use memory::Memory;
+use one_call::{Built, one_call};
 
 fn conditions(box_size: f64) -> InitialConditions<'static> {
     let cosmology = Cosmology::goliat();
@@ -55,65 +54,15 @@ fn sides() -> Vec<usize> {
     if large { vec![128, 256, 512] } else { vec![128, 256] }
 }
 
-/// A built-in transform of side n on memory of its own.
-struct Built<'a, T: Real> {
-    tables: &'a Tables<'a, T>,
-    work: Memory,
-    exec: &'a dyn Exec,
-}
-
-impl<'a, T: Real> Built<'a, T> {
-    fn new(tables: &'a Tables<'a, T>, exec: &'a dyn Exec) -> Self {
-        Self { tables, work: Memory::new(Transform::<T>::workspace(tables.n()).unwrap()), exec }
-    }
-
-    fn transform(&mut self) -> Transform<'_, T> {
-        let n = self.tables.n();
-        let cells = Brick::whole_padded(n, Space::Configuration, recommended_padding::<T>(n)).unwrap();
-        Transform::new(self.tables, cells, self.work.bytes(), self.exec).unwrap()
-    }
-}
-
 fn whole<T: Real>(criterion: &mut Criterion, name: &str) {
     let mut group = criterion.benchmark_group(format!("whole/{name}"));
     group.sample_size(10).warm_up_time(Duration::from_millis(100)).measurement_time(Duration::from_secs(5));
     let pool = Threads::new(2).unwrap();
     for n in sides() {
-        let cells = n * n * n;
-        group.throughput(Throughput::Elements(cells as u64));
-        let m = next_side(3 * n / 2).unwrap();
-        let (mut coarse, mut fine) =
-            (Memory::new(Tables::<T>::layout(n).unwrap()), Memory::new(Tables::<T>::layout(m).unwrap()));
-        let coarse = Tables::<T>::new(n, coarse.bytes()).unwrap();
-        let fine = Tables::<T>::new(m, fine.bytes()).unwrap();
-        let (mut x, mut v) = (vec![T::ZERO; 3 * cells], vec![T::ZERO; 3 * cells]);
         let conditions = conditions(n as f64);
-        for dealiased in [false, true] {
+        for (kind, dealiased) in [("aliased", false), ("dealiased", true)] {
             for (threads, exec) in [(1, &Serial as &dyn Exec), (2, &pool)] {
-                let (mut coarse, mut fine) = (Built::new(&coarse, exec), Built::new(&fine, exec));
-                let (mut fft, mut work) = (coarse.transform(), fine.transform());
-                let optional = dealiased.then_some(&work as &dyn Fft3<T>);
-                let layout = initial_conditions_scratch(Order::Second.into(), &fft, optional).unwrap();
-                let mut scratch = Memory::new(layout);
-                let kind = if dealiased { "dealiased" } else { "aliased" };
-                eprintln!(
-                    "{kind}, n = {n}: {:.1} bytes of scratch a cell",
-                    layout.size as f64 / cells as f64
-                );
-                group.bench_function(BenchmarkId::new(format!("{kind}/{threads}"), n), |bencher| {
-                    bencher.iter(|| {
-                        initial_conditions(
-                            &mut Components::triples(black_box(&mut x)).unwrap(),
-                            &mut Components::triples(black_box(&mut v)).unwrap(),
-                            &conditions,
-                            &mut fft,
-                            dealiased.then_some(&mut work as &mut dyn Fft3<T>),
-                            scratch.bytes(),
-                            exec,
-                        )
-                        .unwrap();
-                    });
-                });
+                one_call::<T>(&mut group, &format!("{kind}/{threads}"), &conditions, n, dealiased, exec);
             }
         }
     }

@@ -142,6 +142,35 @@ static inline void fill_rows(double *k, double *power, double *transfer) {
     }
 }
 
+/* k, T_m, T_s, V_s, and what the linear spectrum stands for. */
+enum { COLUMNS = 5 };
+
+static inline void fill_columns(double (*columns)[ROWS]) {
+    double power[ROWS];
+    int row;
+    fill_rows(columns[0], power, columns[1]);
+    for (row = 0; row < ROWS; row++) {
+        double square = (double)(row + 1) * (double)(row + 1);
+        columns[2][row] = 1.25 / (1.0 + 0.0625 * square);
+        columns[3][row] = 0.875 / (1.0 + 0.04 * square);
+        columns[4][row] = 1.0 / (1.0 + 0.045 * square);
+    }
+}
+
+/* A species without and one with a reference. */
+static inline void make_species(fixpair_species *species, double (*columns)[ROWS]) {
+    int i;
+    for (i = 0; i < 2; i++) {
+        MUST(fixpair_species_init(&species[i]));
+        species[i].rows = ROWS;
+        species[i].k = columns[0];
+        species[i].matter = columns[1];
+        species[i].density = columns[2];
+        species[i].velocity = columns[3];
+        species[i].reference = i == 0 ? NULL : columns[4];
+    }
+}
+
 /*
  * Memory with canaries
  */

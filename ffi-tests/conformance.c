@@ -6,6 +6,8 @@
  */
 #define _POSIX_C_SOURCE 200112L
 
+#include <math.h>
+
 #include "hosts.h"
 
 /* NULL, the pool with 1, 2 and 5 threads, the host's own loop. */
@@ -61,7 +63,8 @@ static void scalars(const fixpair_exec *exec) {
     uint64_t numbers[400], hash = HASH_START;
     uint64_t *ids = (uint64_t *)take(5 * N * N * sizeof *ids);
     const uint32_t counter[4] = {1, 2, 3, 4}, key[2] = {5, 6};
-    uint32_t block[4];
+    uint32_t block[4], seeds[N * N];
+    double uniforms[40];
     size_t reals;
     int i, axis;
     for (i = 0; i >= FIXPAIR_ERROR_SINGULAR; i--) {
@@ -75,6 +78,14 @@ static void scalars(const fixpair_exec *exec) {
     check_case("version", hash_bytes(HASH_START, fixpair_version(), strlen(fixpair_version())));
     MUST(fixpair_philox4x32_10(block, counter, key));
     check_case("philox4x32_10", hash_bytes(HASH_START, block, sizeof block));
+    MUST(fixpair_ranlxd1(uniforms, 40, SEED));
+    check_case("ranlxd1", hash_bytes(HASH_START, uniforms, sizeof uniforms));
+    make_bricks(bricks);
+    for (i = 0; i < BRICKS; i++) {
+        size_t columns = bricks[i].count[0] * bricks[i].count[1];
+        MUST(fixpair_ngenic_seeds(seeds, columns, &bricks[i], SEED));
+        check_named("ngenic_seeds.", brick_names[i], "", hash_bytes(HASH_START, seeds, columns * sizeof *seeds));
+    }
     MUST(fixpair_realisation_init(&realisation, SEED));
     CHECK(realisation.struct_size == sizeof realisation);
     numbers[0] = realisation.seed;
@@ -85,7 +96,6 @@ static void scalars(const fixpair_exec *exec) {
     numbers[5] = (uint64_t)realisation.selection;
     numbers[6] = realisation.sample;
     check_case("realisation_init", hash_bytes(HASH_START, numbers, 7 * sizeof *numbers));
-    make_bricks(bricks);
     for (i = 0; i < BRICKS; i++) {
         const fixpair_brick *brick = &bricks[i];
         MUST(fixpair_brick_reals(&reals, brick));
@@ -200,6 +210,7 @@ static void tables(const fixpair_exec *exec) {
 }
 
 #include "conformance_bins.h"
+#include "conformance_species.h"
 #include "conformance_steps.h"
 #include "conformance_variance.h"
 
@@ -207,6 +218,9 @@ static void tables(const fixpair_exec *exec) {
 #define X(name) name##_f32
 #define SUFFIX ".f32"
 #include "conformance_real.h"
+#include "conformance_shape.h"
+#include "conformance_initial.h"
+#include "conformance_third.h"
 #include "conformance_particles.h"
 #include "conformance_estimate.h"
 #include "conformance_gravity.h"
@@ -220,6 +234,9 @@ static void tables(const fixpair_exec *exec) {
 #define X(name) name##_f64
 #define SUFFIX ".f64"
 #include "conformance_real.h"
+#include "conformance_shape.h"
+#include "conformance_initial.h"
+#include "conformance_third.h"
 #include "conformance_particles.h"
 #include "conformance_estimate.h"
 #include "conformance_gravity.h"
@@ -260,8 +277,15 @@ int main(int count, char **arguments) {
         whites_f64(exec);
         stages_f32(exec);
         stages_f64(exec);
+        shapes_f32(exec);
+        shapes_f64(exec);
         universes_f32(exec);
         universes_f64(exec);
+        species_tables(exec);
+        beyond_second_order_f32(exec);
+        beyond_second_order_f64(exec);
+        third_order_f32(exec);
+        third_order_f64(exec);
         particles_and_meshes_f32(exec);
         particles_and_meshes_f64(exec);
         estimates_f32(exec);

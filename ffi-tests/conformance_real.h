@@ -73,7 +73,7 @@ static void X(transforms)(const fixpair_exec *exec) {
 
 static void X(whites)(const fixpair_exec *exec) {
     fixpair_brick bricks[BRICKS];
-    fixpair_realisation normal, fixed, mean;
+    fixpair_realisation normal, fixed, mean, ngenic, fastpm;
     X(built_in) transform;
     REAL *modes;
     size_t length, i;
@@ -85,6 +85,13 @@ static void X(whites)(const fixpair_exec *exec) {
     mean.amplitude = FIXPAIR_AMPLITUDE_FIXED_TO_MEAN;
     mean.phase = FIXPAIR_PHASE_INVERTED;
     mean.nyquist = FIXPAIR_NYQUIST_FILLED;
+    ngenic = normal;
+    ngenic.scheme = FIXPAIR_SCHEME_NGENIC;
+    ngenic.selection = FIXPAIR_SELECTION_SPHERE;
+    ngenic.sample = N - 3;
+    fastpm = fixed;
+    fastpm.scheme = FIXPAIR_SCHEME_FASTPM;
+    fastpm.nyquist = FIXPAIR_NYQUIST_FILLED;
     for (b = 0; b < BRICKS; b++) {
         modes = X(array_of)(&bricks[b], &length);
         memset(modes, CANARY_BYTE, length * sizeof(REAL));
@@ -92,6 +99,12 @@ static void X(whites)(const fixpair_exec *exec) {
         check_named("white_modes.", brick_names[b], SUFFIX, hash_brick(HASH_START, modes, &bricks[b], sizeof(REAL)));
         MUST(X(fixpair_white_modes)(modes, length, &bricks[b], &fixed, amplitude_table, table_length, exec));
         check_named("white_modes.coloured_", brick_names[b], SUFFIX,
+                    hash_brick(HASH_START, modes, &bricks[b], sizeof(REAL)));
+        MUST(X(fixpair_white_modes)(modes, length, &bricks[b], &ngenic, NULL, 0, exec));
+        check_named("white_modes.ngenic_", brick_names[b], SUFFIX,
+                    hash_brick(HASH_START, modes, &bricks[b], sizeof(REAL)));
+        MUST(X(fixpair_white_modes)(modes, length, &bricks[b], &fastpm, amplitude_table, table_length, exec));
+        check_named("white_modes.fastpm_", brick_names[b], SUFFIX,
                     hash_brick(HASH_START, modes, &bricks[b], sizeof(REAL)));
         MUST(X(fixpair_impose)(modes, length, &bricks[b], &fixed, exec));
         MUST(X(fixpair_scale_modes)(modes, length, &bricks[b], alpha_table, table_length, exec));

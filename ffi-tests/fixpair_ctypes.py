@@ -30,7 +30,10 @@ Linear = structure("Linear", struct_size=c_size_t, source=c_int32, normalisation
                    value=ctypes.POINTER(c_double), rows=c_size_t, amount=c_double)
 Conditions = structure("Conditions", struct_size=c_size_t, realisation=Realisation, cosmology=Cosmology, linear=Linear,
                        redshift=c_double, box_size=c_double, f_nl=c_double, g_nl=c_double, convention=c_int32,
-                       order=c_int32)
+                       order=c_int32, shape=c_int32, rows_len=c_size_t, rows=c_void_p, species=c_void_p)
+ShapeRow = structure("ShapeRow", coefficient=c_double, s_out=c_double, s_a=c_double, s_b=c_double)
+Species = structure("Species", struct_size=c_size_t, rows=c_size_t, k=c_void_p, matter=c_void_p, density=c_void_p,
+                    velocity=c_void_p, reference=c_void_p)
 Components = structure("Components", x=c_void_p, y=c_void_p, z=c_void_p, stride=c_size_t, length=c_size_t)
 Positions = structure("Positions", x=c_void_p, y=c_void_p, z=c_void_p, stride=c_size_t, length=c_size_t)
 Binning = structure("Binning", struct_size=c_size_t, edges=c_void_p, edges_len=c_size_t, second=c_int32,
@@ -76,7 +79,9 @@ CUBE, SPHERE = 0, 1
 CMB, LSS = 0, 1
 POWER, TRANSFER, EISENSTEIN_HU, EISENSTEIN_HU_SMOOTH = 0, 1, 2, 3
 AS_GIVEN, SIGMA8, AMPLITUDE, A_S = 0, 1, 2, 3
-FIRST, SECOND = 1, 2
+FIRST, SECOND, THIRD = 1, 2, 3
+LOCAL, EQUILATERAL, ORTHOGONAL, ORTHOGONAL_LSS, FOLDED, ROWS = 0, 1, 2, 3, 4, 5
+RATIO_MATTER, RATIO_DENSITY, RATIO_VELOCITY = 0, 1, 2
 NGP, CIC, TSC, PCS = 1, 2, 3, 4
 COSINE, PARALLEL = 1, 2
 WINDOW, ALIASED = 16, 32
@@ -97,11 +102,12 @@ LETTERS = {"p": c_void_p, "n": c_size_t, "d": c_double, "i": c_int32, "w": ctype
 SIGNATURES = {
     "brick_whole": "pnin", "brick_slab": "pninn", "brick_transposed_slab": "pnnn", "brick_reals": "pp",
     "exec_self_test": "p", "threads_create": "ppn",
-    "realisation_init": "pu", "philox4x32_10": "ppp",
+    "realisation_init": "pu", "philox4x32_10": "ppp", "ranlxd1": "pnu", "ngenic_seeds": "pnpu",
     "cosmology_init": "p", "radiation_density": "pddd", "expansion": "ppnp", "growth_factors": "ppnp",
     "growth_suppression": "pp", "linear_power": "ppnppd", "linear_transfer": "ppnpp", "linear_sigma": "pdpp",
     "alpha": "ppnppdi", "mode_table_length": "pn", "potential_amplitude_table": "pnndppip",
-    "alpha_table": "pnndppdip", "conditions_init": "pu", "particle_ids": "pnpup", "brick_with_ghosts": "ppid",
+    "alpha_table": "pnndppdip", "species_init": "p", "species_table": "pnpindp", "conditions_init": "pu", "shape_rows": "pnpi",
+    "particle_ids": "pnpup", "brick_with_ghosts": "ppid",
     "binning_init": "ppn", "binning_lengths": "ppppn", "binning_read": "pnpnpnpn", "binning_normalise": "pnpnwd",
     "edges_uniform": "pndd", "edges_wavenumbers": "ppnd", "edges_exact": "pnu", "power_sums_scratch": "pppn",
     "subtract_shot_noise": "pnpnpnwpn", "correlation_modes_scratch": "pp", "correlation_sums_scratch": "pppn",
@@ -133,8 +139,11 @@ SIGNATURES = {
 TWINS = {
     "fft_tables_scratch": "pn", "fft_tables_init": "pnn", "fft_scratch": "pn", "fft_init": "ppnnpnp",
     "fft_self_test": "ppn", "white_modes": "pnpppnp", "impose": "pnppp", "modes_from_field": "pnppp",
-    "initial_conditions_scratch": "pppp", "initial_conditions": "ppppppnp", "scale_modes": "pnppnp",
+    "initial_conditions_scratch": "pppp", "initial_conditions": "ppppppnp", "initial_conditions_at_scratch": "ppnpp",
+    "initial_conditions_at": "pppppppnp", "third_order_sources_scratch": "pp", "third_order_sources": "pppppppnppnp",
+    "transverse_displacement": "pnpppnndpp", "scale_modes": "pnppnp",
     "copy_modes": "pnppnpp", "add_local_scratch": "pp", "add_local": "pnpddppnpnp",
+    "add_shape_scratch": "ppp", "add_shape": "pnpddpnppnp",
     "second_order_source": "pnpnpppppnp", "displacement": "pnpnpndpp", "displace": "ppppnpndddp",
     "deposit_scratch": "ppni", "deposit": "pnpppndidpnp", "read_out_scratch": "ppni", "read_out": "pnpnppdidpnp",
     "add_cells": "pnppnpp", "copy_cells": "pnppnpp", "interlace": "ppnpp", "power_sums": "pnpnnpnppppnp",

@@ -1,6 +1,7 @@
 /*
- * One initial condition where there is nothing, its power spectrum and bispectrum, the halos that it grows into, and f_NL from spectra of halos: no C library, no heap, no threads, no main. Linux on
- * x86-64; exits with 0 if the particles and their numbers are there, else with a number that says where it stopped.
+ * Initial conditions where there is nothing, their power spectrum and bispectrum, the halos that they grow into, and f_NL from spectra of
+ * halos: no C library, no heap, no threads, no main. Linux on x86-64; exits with 0 if the particles and their numbers are there, else with
+ * a number that says where it stopped.
  */
 #define FIXPAIR_NO_THREADS
 #define FIXPAIR_NO_LINALG
@@ -274,6 +275,73 @@ static void constrain(void) {
     }
 }
 
+/* Baryons at third order from positions of the host's own, with a kernel of the host's own; and its sources once more, stage by stage. */
+static void own(const fixpair_fft_f32 *fft) {
+    enum { OWN = 100, MESHES = 7 };
+    static const double k[] = {1e-3, 1e-2, 10.0}, matter[] = {1.0, 0.5, 1e-5}, density[] = {0.9, 0.45, 0.9e-5};
+    static const fixpair_shape_row kernel[] = {{1.0, 0.0, 0.0, 0.0}, {0.5, -1.0, 0.5, 0.5}};
+    static float places[9 * OWN];
+    double table[3 * (SIDE / 2) * (SIDE / 2) + 1];
+    fixpair_conditions conditions;
+    fixpair_species baryons;
+    fixpair_positions_f32 from;
+    fixpair_components_f32 x, v;
+    fixpair_layout layout;
+    float *mesh[MESHES];
+    void *scratch;
+    size_t i, kept = used;
+    must(fixpair_species_init(&baryons), 60);
+    baryons.rows = 3;
+    baryons.k = k;
+    baryons.matter = matter;
+    baryons.density = baryons.velocity = density;
+    must(fixpair_species_table(table, sizeof table / sizeof *table, &baryons, FIXPAIR_RATIO_DENSITY, SIDE, 1000.0, NULL), 61);
+    for (i = 1; i < sizeof table / sizeof *table; i++) {
+        if (!(table[i] > 0.8999999 && table[i] < 0.9000001)) {
+            leave(62);
+        }
+    }
+    must(fixpair_conditions_init(&conditions, 7), 63);
+    conditions.f_nl = 100.0;
+    conditions.order = FIXPAIR_ORDER_THIRD;
+    conditions.shape = FIXPAIR_SHAPE_ROWS;
+    conditions.rows = kernel;
+    conditions.rows_len = 2;
+    conditions.species = &baryons;
+    must(fixpair_initial_conditions_at_scratch_f32(&layout, &conditions, OWN, fft, NULL), 64);
+    scratch = piece(layout);
+    for (i = 0; i < 3 * OWN; i++) {
+        places[i] = 3.3f * (float)i;
+    }
+    from.x = places;
+    from.y = places + 1;
+    from.z = places + 2;
+    x.x = places + 3 * OWN;
+    x.y = x.x + 1;
+    x.z = x.x + 2;
+    from.stride = x.stride = 3;
+    from.length = x.length = OWN;
+    v = x;
+    v.x += 3 * OWN;
+    v.y += 3 * OWN;
+    v.z += 3 * OWN;
+    must(fixpair_initial_conditions_at_f32(&x, &v, &from, &conditions, fft, NULL, scratch, layout.size, NULL), 65);
+    for (i = 0; i < 3 * OWN; i++) {
+        if (!(x.x[i] >= 0 && x.x[i] < 1000) || v.x[i] == 0) {
+            leave(66);
+        }
+    }
+    for (i = 0; i < MESHES; i++) {
+        mesh[i] = room(fft->length * sizeof *mesh[i]);
+    }
+    must(fixpair_white_modes_f32(mesh[0], fft->length, &fft->fourier, &conditions.realisation, NULL, 0, NULL), 67);
+    must(fixpair_third_order_sources_scratch_f32(&layout, fft), 68);
+    must(fixpair_third_order_sources_f32(mesh[1], mesh[2], mesh[3], mesh[4], mesh[5], mesh[6], mesh[0], fft->length, fft, scratch,
+                                         layout.size, NULL), 69);
+    must(fixpair_transverse_displacement_f32(mesh[0], fft->length, mesh[4], mesh[5], mesh[6], fft->length, 0, 1.0, fft, NULL), 70);
+    used = kept;
+}
+
 static void make(void) {
     fixpair_conditions conditions;
     fixpair_fft_f32 fft;
@@ -311,6 +379,7 @@ static void make(void) {
     if (moved != 3 * PARTICLES) {
         leave(9);
     }
+    own(&fft);
     measure(&fft);
     evolve(&fft, &x, &v);
     constrain();

@@ -97,8 +97,16 @@ static void meshes(double *data, float *single) {
         realisation.amplitude = choice();
         realisation.phase = choice();
         realisation.nyquist = choice();
-        realisation.scheme = choice();
+        realisation.selection = choice();
+        realisation.sample = (uint32_t)size();
     }
+    /* Of any brick of a large mesh, these draw the whole table of seeds. */
+    if (b.n <= 64) {
+        realisation.scheme = choice();
+        reals = word() % 4 == 0 ? size() : b.count[0] * b.count[1];
+        sane(fixpair_ngenic_seeds((uint32_t *)data, reals % LENGTH, &b, word()));
+    }
+    sane(fixpair_ranlxd1(data, size() % LENGTH, word()));
     sane(fixpair_brick_whole(&c, size(), choice(), size()));
     sane(fixpair_brick_slab(&c, size(), choice(), size(), size()));
     sane(fixpair_brick_transposed_slab(&c, size(), size(), size()));
@@ -133,6 +141,30 @@ static void sizes(void) {
     sane(fixpair_fft_scratch_f32(&layout, size()));
     sane(fixpair_fft_scratch_f64(&layout, size()));
     sane(fixpair_mode_table_length(&length, size()));
+}
+
+/* Rows that nobody would choose: exponents that sum to 0 now and then. */
+static void shapes(double *data, void *scratch, size_t scratch_len, const fixpair_fft_f64 *fft) {
+    fixpair_brick b = brick();
+    fixpair_shape_row rows[8];
+    fixpair_layout layout;
+    size_t count, i;
+    sane(fixpair_shape_rows(rows, 8, &count, choice()));
+    MUST(fixpair_shape_rows(rows, 8, &count, FIXPAIR_SHAPE_ORTHOGONAL_LSS));
+    for (i = 0; i < 8; i++) {
+        if (word() % 4 == 0) {
+            rows[i].coefficient = number();
+            rows[i].s_a = maybe(8.0 * (double)(word() % 3) - 8.0);
+            rows[i].s_b = maybe(0.5);
+            rows[i].s_out = -(rows[i].s_a + rows[i].s_b);
+        }
+    }
+    if (word() % 2) {
+        MUST(fixpair_brick_whole(&b, 8, FIXPAIR_SPACE_FOURIER, 0));
+    }
+    sane(fixpair_add_shape_scratch_f64(&layout, &b, fft));
+    sane(fixpair_add_shape_f64(data, LENGTH, &b, maybe(100.0), maybe(0.96), rows, word() % 9, fft, scratch, scratch_len,
+                               NULL));
 }
 
 static void universes(double *data, void *scratch, size_t scratch_len, const fixpair_fft_f64 *fft) {
@@ -175,6 +207,7 @@ static void universes(double *data, void *scratch, size_t scratch_len, const fix
     sane(fixpair_linear_transfer(out, in, VALUES, &conditions.cosmology, &conditions.linear));
     sane(fixpair_linear_sigma(&value, maybe(8.0), &conditions.cosmology, &conditions.linear));
     sane(fixpair_alpha(out, in, VALUES, &conditions.cosmology, &conditions.linear, maybe(1.0), choice()));
+    shapes(data, scratch, scratch_len, fft);
     MUST(fixpair_mode_table_length(&table, 8));
     sane(fixpair_potential_amplitude_table(data, table, 8, maybe(100.0), &conditions.cosmology, &conditions.linear,
                                            choice(), NULL));
@@ -205,6 +238,7 @@ static void universes(double *data, void *scratch, size_t scratch_len, const fix
 
 #include "fuzz_estimate.h"
 #include "fuzz_gravity.h"
+#include "fuzz_initial.h"
 #include "fuzz_variance.h"
 
 int main(void) {
@@ -236,6 +270,7 @@ int main(void) {
         statistics(memory);
         if (round % 8 == 0) {
             universes(data, scratch, layout.size, &fft);
+            beginnings(data, memory, &fft);
             bispectra(data, memory, sums, &fft);
             runs(data, memory, &fft);
         }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The files whose items the header holds, in its order, with the title of each section of functions.
-const SECTIONS: [(&str, &str); 36] = [
+const SECTIONS: [(&str, &str); 38] = [
     ("status", "Statuses and version"),
     ("mesh", "Meshes and bricks"),
     ("exec", "Threads"),
@@ -16,6 +16,8 @@ const SECTIONS: [(&str, &str); 36] = [
     ("initial", "Initial conditions in one call"),
     ("pre_initial", "Initial conditions at the host's own positions"),
     ("stages", "Initial conditions stage by stage"),
+    ("shape", "Shapes of primordial non-Gaussianity"),
+    ("third", "Third order"),
     ("particles", "Particles"),
     ("pm", "Deposit and read-out"),
     ("cells", "Ghost planes and interlacing"),
@@ -119,6 +121,8 @@ fn generate() -> String {
         "FREE_B_G".into(),
         "FREE_P".into(),
         "FREE_F_NL".into(),
+        "Shape".into(),
+        "Shape_ALL".into(),
     ]);
     let mut builder = cbindgen::Builder::new().with_config(config);
     for file in STRUCTS {

@@ -38,7 +38,11 @@ struct Names;
         static constexpr auto self_test = fixpair_fft_self_test_##suffix;                                  \
         static constexpr auto conditions_scratch = fixpair_initial_conditions_scratch_##suffix;            \
         static constexpr auto conditions = fixpair_initial_conditions_##suffix;                            \
+        static constexpr auto at_scratch = fixpair_initial_conditions_at_scratch_##suffix;                 \
+        static constexpr auto at = fixpair_initial_conditions_at_##suffix;                                 \
         static constexpr auto white_modes = fixpair_white_modes_##suffix;                                  \
+        static constexpr auto add_shape_scratch = fixpair_add_shape_scratch_##suffix;                      \
+        static constexpr auto add_shape = fixpair_add_shape_##suffix;                                      \
         typedef fixpair_positions_##suffix Positions;                                                      \
         static constexpr auto deposit_scratch = fixpair_deposit_scratch_##suffix;                          \
         static constexpr auto deposit = fixpair_deposit_##suffix;                                          \
@@ -354,6 +358,8 @@ void two_ranks() {
 
 #include "host_estimate.h"
 #include "host_gravity.h"
+#include "host_shape.h"
+#include "host_initial.h"
 #include "host_variance.h"
 
 /* A few refusals, as a host in C++ meets them: as exceptions, with vectors untouched. */
@@ -393,6 +399,10 @@ int main(int count, char **arguments) {
     for (const fixpair_exec *run : {&exec, static_cast<const fixpair_exec *>(nullptr)}) {
         one_process<float>(run);
         one_process<double>(run);
+        shapes<float>(run);
+        shapes<double>(run);
+        beyond_second_order<float>(run);
+        beyond_second_order<double>(run);
         estimates<float>(run);
         estimates<double>(run);
         runs<float>(run);
@@ -403,6 +413,8 @@ int main(int count, char **arguments) {
     statistics();
     two_ranks<float>();
     two_ranks<double>();
+    two_ranks_beyond_second_order<float>();
+    two_ranks_beyond_second_order<double>();
     refusals<float>();
     refusals<double>();
     return check_report("host");

@@ -72,6 +72,21 @@ fn the_c_of_the_readme_compiles() {
     run(compile.arg(root().join("include")).arg(file));
 }
 
+#[test]
+fn noise_of_ngenic_is_drawn_as_with_gsl() {
+    // A machine need not have GSL; one that is asked to be complete must.
+    let required = std::env::var_os("FIXPAIR_REQUIRE_GSL").is_some();
+    let found = tool("PKG_CONFIG", "pkg-config").args(["--cflags", "--libs", "gsl"]).output();
+    let Some(found) = found.ok().filter(|found| found.status.success()) else {
+        assert!(!required, "GSL is missing, or pkg-config");
+        println!("skipped: no GSL (libgsl-dev)");
+        return;
+    };
+    let options = String::from_utf8_lossy(&found.stdout).into_owned();
+    let options: Vec<_> = options.split_whitespace().collect();
+    run(&mut Command::new(program(Language::C, "gsl_noise.c", "gsl_noise", &options)));
+}
+
 /// Undefined symbols of an object or archive, without the underscore that some platforms put before them.
 fn undefined(file: &Path) -> BTreeSet<String> {
     let output = run(Command::new("nm").arg("-u").arg(file));

@@ -24,6 +24,8 @@ CALL(realisation_init, (P(0), a->u))
 CALL(conditions_init, (P(0), a->u))
 CALL(cosmology_init, (P(0)))
 CALL(philox4x32_10, (P(0), P(1), P(2)))
+CALL(ranlxd1, (P(0), L(0), a->u))
+CALL(ngenic_seeds, (P(0), L(0), P(1), a->u))
 CALL(radiation_density, (P(0), a->d[0], a->d[1], a->d[2]))
 CALL(expansion, (P(0), P(1), L(0), P(2)))
 CALL(growth_factors, (P(0), P(1), L(0), P(2)))
@@ -146,6 +148,19 @@ static void threads(void) {
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.n[0] = SIZE_MAX);
 }
 
+static void seed_tables(void) {
+    fixpair_brick *brick;
+    begin("ngenic_seeds", call_ngenic_seeds);
+    ARRAY(0, OUT, uint32_t, SIDE * SIDE);
+    brick = STRUCT(1, IN, fixpair_brick);
+    MUST(fixpair_brick_whole(brick, SIDE, FIXPAIR_SPACE_FOURIER, 0));
+    length(0, SIDE * SIDE, EXACT);
+    refuse_pointers_and_lengths();
+    ACCEPTED((brick->count[1] = 0, t.a.p[0] = NULL, t.a.n[0] = 0));
+    REFUSED(FIXPAIR_ERROR_LENGTH, brick->count[1] = 1);
+    refuse_bricks(brick);
+}
+
 static void initialisers(void) {
     begin("realisation_init", call_realisation_init);
     STRUCT(0, OUT, fixpair_realisation);
@@ -161,6 +176,11 @@ static void initialisers(void) {
     ARRAY(1, IN, uint32_t, 4);
     ARRAY(2, IN, uint32_t, 2);
     refuse_pointers_and_lengths();
+    begin("ranlxd1", call_ranlxd1);
+    ARRAY(0, OUT, double, 20);
+    length(0, 20, FREE);
+    refuse_pointers_and_lengths();
+    ACCEPTED((t.a.n[0] = 0, t.a.p[0] = NULL));
     begin("mode_table_length", call_mode_table_length);
     ARRAY(0, OUT, size_t, 1);
     t.a.n[0] = SIDE;
@@ -309,7 +329,24 @@ static void ids(void) {
     ACCEPTED((brick->count[0] = 0, t.a.n[0] = 0, t.a.p[0] = NULL));
 }
 
+CALL(shape_rows, (P(0), L(0), P(1), a->i[0]))
+
+static void rows_of_shapes(void) {
+    begin("shape_rows", call_shape_rows);
+    argument(0, OUT, 8 * sizeof(fixpair_shape_row), sizeof(double));
+    STRUCT(1, OUT, size_t);
+    length(0, 8, FREE);
+    t.a.i[0] = FIXPAIR_SHAPE_ORTHOGONAL_LSS;
+    refuse_pointers_and_lengths();
+    REFUSED(FIXPAIR_ERROR_CHOICE, t.a.i[0] = FIXPAIR_SHAPE_ROWS);
+    REFUSED(FIXPAIR_ERROR_CHOICE, t.a.i[0] = -1);
+    /* The number of rows is told all the same. */
+    SPOILED(FIXPAIR_ERROR_LENGTH, t.a.n[0] = 7);
+    SPOILED(FIXPAIR_ERROR_LENGTH, (t.a.n[0] = 0, t.a.p[0] = NULL));
+}
+
 #include "refusals_bins.h"
+#include "refusals_species.h"
 #include "refusals_steps.h"
 #include "refusals_variance.h"
 #include "refusals_scatter.h"
@@ -322,10 +359,12 @@ static void ids(void) {
 #define SUFFIX "_f32"
 #include "refusals_real.h"
 #include "refusals_stages.h"
+#include "refusals_shape.h"
 #include "refusals_estimate.h"
 #include "refusals_gravity.h"
 #include "refusals_run.h"
 #include "refusals_halos.h"
+#include "refusals_initial.h"
 #undef REAL
 #undef X
 #undef SUFFIX
@@ -335,10 +374,12 @@ static void ids(void) {
 #define SUFFIX "_f64"
 #include "refusals_real.h"
 #include "refusals_stages.h"
+#include "refusals_shape.h"
 #include "refusals_estimate.h"
 #include "refusals_gravity.h"
 #include "refusals_run.h"
 #include "refusals_halos.h"
+#include "refusals_initial.h"
 
 int main(void) {
     t.memory = (unsigned char *)take(ARENA);
@@ -347,6 +388,7 @@ int main(void) {
     bricks();
     threads();
     initialisers();
+    seed_tables();
     backgrounds();
     spectra();
     mode_tables();
@@ -364,6 +406,9 @@ int main(void) {
     refuse_modes_f64();
     refuse_stages_f32();
     refuse_stages_f64();
+    rows_of_shapes();
+    refuse_shapes_f32();
+    refuse_shapes_f64();
     refuse_universes_f32();
     refuse_universes_f64();
     refuse_particles_f32();
@@ -390,6 +435,9 @@ int main(void) {
     refuse_catalogues_f64();
     refuse_spheres_f32();
     refuse_spheres_f64();
+    species();
+    refuse_beyond_second_order_f32();
+    refuse_beyond_second_order_f64();
     give_back(t.memory);
     give_back(t.pristine);
     give_back(t.before);

@@ -157,6 +157,8 @@ static void X(refuse_modes)(void) {
     ACCEPTED((own->count[1] = 0, t.a.p[0] = NULL, t.a.n[0] = 0));
     refuse_bricks(own);
     refuse_realisations(realisation);
+    REFUSED(FIXPAIR_ERROR_CHOICE,
+            (realisation->scheme = FIXPAIR_SCHEME_NGENIC, realisation->nyquist = FIXPAIR_NYQUIST_FILLED));
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, table[4] = (double)NAN);
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, table[4] = -(double)INFINITY);
     REFUSED(FIXPAIR_ERROR_NOT_FINITE, table[4] = DBL_MAX);

@@ -194,7 +194,9 @@ static void X(refuse_conditions)(fixpair_conditions *conditions) {
     REFUSED(FIXPAIR_ERROR_VERSION, conditions->struct_size = 0);
     REFUSED(FIXPAIR_ERROR_VERSION, conditions->struct_size++);
     REFUSED(FIXPAIR_ERROR_CHOICE, conditions->order = 0);
-    REFUSED(FIXPAIR_ERROR_CHOICE, conditions->order = 3);
+    REFUSED(FIXPAIR_ERROR_CHOICE, conditions->order = 4);
+    REFUSED(FIXPAIR_ERROR_CHOICE, conditions->shape = FIXPAIR_SHAPE_ROWS + 1);
+    REFUSED(FIXPAIR_ERROR_CHOICE, conditions->shape = -1);
 }
 
 static void X(refuse_universes)(void) {

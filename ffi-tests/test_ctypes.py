@@ -10,6 +10,8 @@ import sys
 import ctypes_estimate
 import ctypes_gravity
 import ctypes_halos
+import ctypes_shape
+import ctypes_initial
 import ctypes_variance
 import fixpair_ctypes as fixpair
 from ctypes_check import (BOX, FINE, FINER, N, PADDING, ROWS, SEED, Buffer, array, check, claims, doubles, elements,
@@ -54,6 +56,14 @@ class Universe:
         block = (ctypes.c_uint32 * 4)()
         library.philox4x32_10(block, (ctypes.c_uint32 * 4)(1, 2, 3, 4), (ctypes.c_uint32 * 2)(5, 6))
         self.case("philox4x32_10", block)
+        uniforms = Buffer(ctypes.c_double, 40)
+        library.ranlxd1(uniforms.start, 40, SEED)
+        self.case("ranlxd1", uniforms)
+        for name, brick in self.bricks().items():
+            columns = brick.count[0] * brick.count[1]
+            seeds = Buffer(ctypes.c_uint32, columns)
+            library.ngenic_seeds(seeds.start, columns, brick, SEED)
+            self.case(f"ngenic_seeds.{name}", seeds)
         r = made(Realisation, library.realisation_init, SEED)
         check(r.struct_size == ctypes.sizeof(r), "a realisation has the size of the header")
         self.case("realisation_init", integers(r.seed, r.scheme, r.amplitude, r.phase, r.nyquist, r.selection, r.sample))
@@ -178,9 +188,13 @@ class Twin:
     def whites(self):
         bricks, table = self.universe.bricks(), self.universe.amplitude
         fixed = self.realisation(amplitude=fixpair.FIXED)
+        ngenic = self.realisation(scheme=fixpair.NGENIC, selection=fixpair.SPHERE, sample=N - 3)
+        fast_pm = self.realisation(scheme=fixpair.FAST_PM, amplitude=fixpair.FIXED, nyquist=fixpair.FILLED)
         for name, brick in bricks.items():
             self.case(f"white_modes.{name}", elements(self.white(brick, self.realisation()), brick))
             self.case(f"white_modes.coloured_{name}", elements(self.white(brick, fixed, table), brick))
+            self.case(f"white_modes.ngenic_{name}", elements(self.white(brick, ngenic), brick))
+            self.case(f"white_modes.fastpm_{name}", elements(self.white(brick, fast_pm, table), brick))
         whole = bricks["whole"]
         mean = self.realisation(amplitude=fixpair.FIXED_TO_MEAN, phase=fixpair.INVERTED, nyquist=fixpair.FILLED)
         self.case("white_modes.mean", elements(self.white(whole, mean), whole))
@@ -264,18 +278,21 @@ class Twin:
 
 # Pointers that may be null, by their place among the arguments; the last one, exec, may be wherever there is one.
 OPTIONAL = {"white_modes": [3, 4, 6], "fft_init": [6], "initial_conditions_scratch": [3], "initial_conditions": [4, 7],
+            "initial_conditions_at_scratch": [4], "initial_conditions_at": [5, 8],
             "displace": [3, 10], "exec_self_test": [0], "deposit": [4, 11], "read_out": [11], "power_sums": [7, 12],
             "shot_noise": [1], "correlation_modes": [1, 9], "correlation_sums": [9], "closed_triangle_count": [3],
             "closed_triangles": [4], "triangle_counts": [8], "bispectrum_sums": [10], "bispectrum": [2, 14], "kick": [14, 15, 18],
             "drift": [6, 7, 8], "evolve": [4, 7, 15, 16], "halos": [6, 12], "halo_sums": [6, 13], "fof_labels": [9],
             "fit_suppression": [2], "ratio_of_means": [6], "difference_of_means": [6], "control_variates": [6], "carpool": [8]}
-EXEC = ("particle_ids", "potential_amplitude_table", "alpha_table", "impose", "modes_from_field", "scale_modes",
-        "copy_modes", "add_local", "second_order_source", "displacement", "add_cells", "copy_cells", "interlace",
-        "shell_modes", "compensate", "forces", "force", "potential", "fof_relabel", "halo_count", "spheres", "refine_centres")
+EXEC = ("particle_ids", "potential_amplitude_table", "alpha_table", "species_table", "impose", "modes_from_field",
+        "scale_modes", "copy_modes", "add_local", "add_shape", "second_order_source", "displacement", "third_order_sources",
+        "transverse_displacement", "add_cells", "copy_cells", "interlace", "shell_modes", "compensate", "forces", "force",
+        "potential", "fof_relabel", "halo_count", "spheres", "refine_centres")
 # Sizes that follow a pointer and are not its length: sides, an axis, a number of threads.
 NO_LENGTH = {"mode_table_length": 1, "fft_tables_scratch": 1, "fft_scratch": 1, "brick_whole": 1, "brick_slab": 1,
-             "brick_transposed_slab": 1, "threads_create": 2, "displacement": 5, "displace": 6, "deposit_scratch": 2,
-             "read_out_scratch": 2, "force": 4, "kick_scratch": 2, "evolve_scratch": 2, "bias_posterior_scratch": 1}
+             "brick_transposed_slab": 1, "threads_create": 2, "displacement": 5, "displace": 6,
+             "initial_conditions_at_scratch": 2, "deposit_scratch": 2, "read_out_scratch": 2, "force": 4,
+             "kick_scratch": 2, "evolve_scratch": 2, "bias_posterior_scratch": 1}
 # Where more than a few are refused as a length.
 AT_MOST = {"power_sums": 3, "correlation_sums": 3}
 
@@ -333,6 +350,7 @@ def main(path, vectors, header):
         universe = Universe(library, cases, run)
         universe.scalars()
         universe.cosmologies()
+        ctypes_initial.tables(universe)
         ctypes_estimate.bins(universe)
         ctypes_gravity.steps_in_time(universe)
         ctypes_halos.scalars(universe)
@@ -342,7 +360,9 @@ def main(path, vectors, header):
             twin.transforms()
             twin.whites()
             twin.stages()
+            ctypes_shape.shapes(twin)
             twin.universes()
+            ctypes_initial.initial(twin)
             ctypes_estimate.particles(twin)
             ctypes_estimate.Estimates(twin).run()
             ctypes_gravity.gravity(twin)
@@ -350,6 +370,7 @@ def main(path, vectors, header):
         if run is exec_of_pool:
             ctypes_estimate.physics(library, run)
             ctypes_gravity.growing_mode(library, run)
+            ctypes_initial.einstein_de_sitter(library)
             ctypes_variance.known_answers(universe)
             for suffix in ("f32", "f64"):
                 ctypes_halos.two_clumps(Twin(universe, suffix))

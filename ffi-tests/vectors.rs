@@ -12,15 +12,19 @@ use fixpair::exec::Serial;
 use fixpair::fft::next_side;
 use fixpair::initial::particles::particle_ids;
 use fixpair::mesh::{Brick, Space};
+use fixpair::noise::ngenic_seeds;
 use fixpair::noise::philox::philox4x32_10;
+use fixpair::noise::ranlux::Ranlxd1;
 use fixpair::status::Error;
 
 use crate::native::folder;
 use crate::vectors_estimate::bin_cases;
 use crate::vectors_gravity::time_cases;
 use crate::vectors_halos::halo_scalars;
+use crate::vectors_initial::species_cases;
 use crate::vectors_particles::ghost_cases;
 use crate::vectors_real::real_cases;
+use crate::vectors_shape::shape_rows;
 use crate::vectors_variance::variance_cases;
 
 /// Side of the mesh, of the finer mesh for squares, and of that for cubes.
@@ -76,10 +80,12 @@ pub(crate) static VECTORS: LazyLock<PathBuf> = LazyLock::new(|| {
     let mut cases = Cases::default();
     scalar_cases(&mut cases);
     cosmology_cases(&mut cases);
+    species_cases(&mut cases);
     ghost_cases(&mut cases);
     bin_cases(&mut cases);
     time_cases(&mut cases);
     halo_scalars(&mut cases);
+    shape_rows(&mut cases);
     variance_cases(&mut cases);
     real_cases::<f32>(&mut cases, "f32");
     real_cases::<f64>(&mut cases, "f64");
@@ -96,6 +102,14 @@ fn scalar_cases(cases: &mut Cases) {
     cases.add("version", Hash::new().bytes(env!("CARGO_PKG_VERSION").as_bytes()));
     let block = philox4x32_10([1, 2, 3, 4], [5, 6]);
     cases.add("philox4x32_10", block.iter().fold(Hash::new(), |hash, word| hash.bytes(&word.to_ne_bytes())));
+    let mut stream = Ranlxd1::new(SEED);
+    cases.add("ranlxd1", (0..40).fold(Hash::new(), |hash, _| hash.bytes(&stream.uniform().to_ne_bytes())));
+    for (name, brick) in bricks() {
+        let mut seeds = vec![0; brick.count()[0] * brick.count()[1]];
+        ngenic_seeds(&mut seeds, &brick, SEED).expect("seeds");
+        let hash = seeds.iter().fold(Hash::new(), |hash, seed| hash.bytes(&seed.to_ne_bytes()));
+        cases.add(&format!("ngenic_seeds.{name}"), hash);
+    }
     cases.add("realisation_init", Hash::new().integers(&[SEED, 0, 0, 0, 0, 0, 0]));
     for (name, brick) in bricks() {
         cases.add(&format!("brick.{name}"), describe(&brick));
@@ -156,7 +170,8 @@ fn cosmology_cases(cases: &mut Cases) {
     cases.add("expansion", Hash::new().doubles(&expansion.collect::<Vec<_>>()));
     let mut growth = vec![Growth::default(); times.len()];
     growth_many(&full(), &times, &mut growth).expect("growth");
-    let growth = growth.iter().fold(Hash::new(), |hash, g| hash.doubles(&[g.d, g.f, g.d2, g.f2]));
+    let members = |g: &Growth| [g.d, g.f, g.d2, g.f2, g.d3a, g.f3a, g.d3b, g.f3b, g.d3c, g.f3c];
+    let growth = growth.iter().fold(Hash::new(), |hash, g| hash.doubles(&members(g)));
     cases.add("growth_factors", growth);
     cases.add("growth_suppression", Hash::new().doubles(&[g_ratio(&full()).expect("g")]));
     let [k, power, transfer] = rows();

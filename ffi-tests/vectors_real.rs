@@ -13,7 +13,8 @@ use fixpair::initial::png::{Local, add_local, add_local_scratch};
 use fixpair::initial::shape::Shape;
 use fixpair::mesh::{Brick, Space};
 use fixpair::noise::{
-    Amplitude, Nyquist, Phase, Realisation, impose, unit_modes_from_field, white_modes, white_modes_coloured,
+    Amplitude, Nyquist, Phase, Realisation, Scheme, Selection, impose, unit_modes_from_field, white_modes,
+    white_modes_coloured,
 };
 use fixpair::real::Real;
 use fixpair::scratch::Layout;
@@ -24,7 +25,9 @@ use crate::vectors::{
 use crate::vectors_estimate::estimate_cases;
 use crate::vectors_gravity::gravity_cases;
 use crate::vectors_halos::halo_cases;
+use crate::vectors_initial::initial_cases;
 use crate::vectors_particles::particle_cases;
+use crate::vectors_shape::shape_cases;
 
 /// Memory that begins on a cache line.
 pub(crate) struct Memory(Vec<[u64; 8]>);
@@ -86,6 +89,7 @@ pub(crate) fn real_cases<T: Real>(cases: &mut Cases, suffix: &str) {
     transform_cases::<T>(&mut add);
     white_cases::<T>(&mut add);
     stage_cases::<T>(&mut add);
+    shape_cases::<T>(&mut add);
     particle_cases::<T>(&mut add);
     estimate_cases::<T>(&mut add);
     gravity_cases::<T>(&mut add);
@@ -93,6 +97,7 @@ pub(crate) fn real_cases<T: Real>(cases: &mut Cases, suffix: &str) {
     for (name, order, fine, realisation, local) in conditions() {
         add(name, universe::<T>(order, fine, realisation, local));
     }
+    initial_cases::<T>(&mut add);
 }
 
 fn transform_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
@@ -126,6 +131,17 @@ fn white_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
         let fixed = Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(SEED) };
         white_modes_coloured(&mut modes, &brick, &fixed, &table, &Serial).expect("modes");
         add(&format!("white_modes.coloured_{name}"), elements(Hash::new(), &modes, &brick));
+        let ngenic = Realisation {
+            scheme: Scheme::NGenIc,
+            selection: Selection::Sphere,
+            sample: N as u32 - 3,
+            ..Realisation::new(SEED)
+        };
+        white_modes(&mut modes, &brick, &ngenic, &Serial).expect("modes");
+        add(&format!("white_modes.ngenic_{name}"), elements(Hash::new(), &modes, &brick));
+        let fast_pm = Realisation { scheme: Scheme::FastPm, nyquist: Nyquist::Filled, ..fixed };
+        white_modes_coloured(&mut modes, &brick, &fast_pm, &table, &Serial).expect("modes");
+        add(&format!("white_modes.fastpm_{name}"), elements(Hash::new(), &modes, &brick));
     }
     let brick = Brick::whole(N, Space::Fourier).expect("a brick");
     let mut modes = vec![T::ZERO; brick.reals()];
@@ -138,12 +154,13 @@ fn white_cases<T: Real>(add: &mut dyn FnMut(&str, Hash)) {
     white_modes(&mut modes, &brick, &mean, &Serial).expect("modes");
     add("white_modes.mean", elements(Hash::new(), &modes, &brick));
     white_modes(&mut modes, &brick, &Realisation::new(SEED), &Serial).expect("modes");
-    impose(&mut modes, &brick, Amplitude::Fixed, Phase::Inverted, Nyquist::Filled, &Serial).expect("modes");
+    let imposed = Realisation { amplitude: Amplitude::Fixed, ..mean };
+    impose(&mut modes, &brick, &imposed, &Serial).expect("modes");
     add("impose", elements(Hash::new(), &modes, &brick));
     let hash = with_transform::<T, _>(N, 0, |fft| {
         let mut data: Vec<T> = (0..fft.length()).map(|i| T::from_f64(noise(i))).collect();
-        unit_modes_from_field(fft, &mut data, Amplitude::Normal, Phase::Inverted, Nyquist::Zero, &Serial)
-            .expect("modes");
+        let inverted = Realisation { phase: Phase::Inverted, ..Realisation::new(SEED) };
+        unit_modes_from_field(fft, &mut data, &inverted, &Serial).expect("modes");
         elements(Hash::new(), &data, fft.fourier())
     });
     add("modes_from_field", hash);
@@ -242,7 +259,8 @@ fn universe<T: Real>(order: Order, fine: Option<usize>, realisation: Realisation
     })
 }
 
-fn particles<T: Real>(
+/// One call, on the lattice of the mesh.
+pub(crate) fn particles<T: Real>(
     conditions: &InitialConditions<'_>,
     fft: &mut dyn Fft3<T>,
     mut fine: Option<&mut dyn Fft3<T>>,

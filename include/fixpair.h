@@ -178,11 +178,26 @@
 /* `amount` is A_s, the variance per ln k of the curvature perturbation at 0.05/Mpc. */
 #define FIXPAIR_NORMALISE_A_S 3
 
+/* T_m/reference: multiplies alpha, that is, the modes of total matter. */
+#define FIXPAIR_RATIO_MATTER 0
+
+/* T_s/T_m: from modes of total matter to those of the species. */
+#define FIXPAIR_RATIO_DENSITY 1
+
+/* V_s/T_m: from modes of total matter to v_s/(a H i k/k^2). */
+#define FIXPAIR_RATIO_VELOCITY 2
+
+/* The caller's own kernel: see fixpair_shape_row. */
+#define FIXPAIR_SHAPE_ROWS 5
+
 /* Zel'dovich displacements. */
 #define FIXPAIR_ORDER_FIRST 1
 
 /* Second-order Lagrangian perturbation theory. */
 #define FIXPAIR_ORDER_SECOND 2
+
+/* Third order, longitudinal and transverse, whose products never alias. */
+#define FIXPAIR_ORDER_THIRD 3
 
 /* Nearest grid point: p = 1. */
 #define FIXPAIR_WINDOW_NGP 1
@@ -486,6 +501,18 @@ typedef struct fixpair_growth {
   double d2;
   /* dlnD2/dlna. */
   double f2;
+  /* Third order, of the determinant; negative. */
+  double d3a;
+  /* dlnD3a/dlna. */
+  double f3a;
+  /* Third order, of the first and the second together. */
+  double d3b;
+  /* dlnD3b/dlna. */
+  double f3b;
+  /* Third order, transverse. */
+  double d3c;
+  /* dlnD3c/dlna. */
+  double f3c;
 } fixpair_growth;
 
 /*
@@ -516,6 +543,51 @@ typedef struct fixpair_linear {
   double amount;
 } fixpair_linear;
 
+/*
+ * One species of matter, cold dark matter or baryons, from the columns of CAMB or CLASS at the time of the particles, in any common unit, all
+ * positive. `linear` of the conditions stays that of total matter. Called once for each species with one seed, initial conditions are matched:
+ * the same phases, and the same moduli over their r.m.s.
+ *
+ * delta_s = (T_s/T_m) delta_m and v_s,k = a H i k/k^2 (V_s/T_m) delta_m,k at first order; the second and third orders are those of total
+ * matter, whose gravity moves both. What this leaves out: the coupling of the difference of the species at second order, isocurvature
+ * that gravity does not remember, pressure, free streaming and thermal velocities (neutrinos are no particles here, only what they do to
+ * linear growth), and growth of higher orders that depends on k. Growth after the start is the host's; it should move all species together.
+ */
+typedef struct fixpair_species {
+  /* sizeof(fixpair_species). */
+  size_t struct_size;
+  /* Rows of each column, 2 or more. */
+  size_t rows;
+  /* h/Mpc, increasing. */
+  const double *k;
+  /* T_m of total matter, neutrinos included: what gravity acts by. */
+  const double *matter;
+  /* T_s of the species: T_m itself, or that of matter without neutrinos, if there is but one. */
+  const double *density;
+  /*
+   * V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it is, for all its columns are over k^2.
+   * CLASS: -theta_s/(a H), theta_s of the Newtonian gauge, or theta_s + alpha k^2 of the synchronous; its columns are negative: change all signs.
+   */
+  const double *velocity;
+  /*
+   * What the linear spectrum, scaled back with D(a) of the background, stands for: T_m(k, z = 0) D(a). Then growth that depends on k is
+   * accounted for, and modes of total matter are T_m(k, a). NULL for T_m itself: growth as of the background.
+   */
+  const double *reference;
+} fixpair_species;
+
+/* One separable product: c X_out[(X_a phi)(X_b phi)]. */
+typedef struct fixpair_shape_row {
+  /* c. */
+  double coefficient;
+  /* Exponent on the product; the three sum to 0, and none is above 8 in modulus. */
+  double s_out;
+  /* Exponent on one factor. */
+  double s_a;
+  /* Exponent on the other factor; exchanging the two changes nothing. */
+  double s_b;
+} fixpair_shape_row;
+
 /* A universe, and when and how large to start it: everything that fixpair_initial_conditions_f64 asks. */
 typedef struct fixpair_conditions {
   /* sizeof(fixpair_conditions). */
@@ -530,14 +602,22 @@ typedef struct fixpair_conditions {
   double redshift;
   /* Side of the box in Mpc/h. */
   double box_size;
-  /* Phi = Phi_G + f_nl (Phi_G^2 - <Phi_G^2>) + g_nl (Phi_G^3 - 3 <Phi_G^2> Phi_G). */
+  /* Local: Phi = Phi_G + f_nl (Phi_G^2 - <Phi_G^2>) + g_nl (Phi_G^3 - 3 <Phi_G^2> Phi_G). Other shapes have another kernel than Phi_G^2. */
   double f_nl;
-  /* See f_nl. */
+  /* See f_nl; always local. */
   double g_nl;
   /* In which convention f_nl and g_nl are: FIXPAIR_CONVENTION_CMB or _LSS. */
   int32_t convention;
-  /* FIXPAIR_ORDER_FIRST or _SECOND. */
+  /* FIXPAIR_ORDER_FIRST, _SECOND or _THIRD. */
   int32_t order;
+  /* What f_nl multiplies: FIXPAIR_SHAPE_LOCAL, _EQUILATERAL, _ORTHOGONAL, _ORTHOGONAL_LSS, _FOLDED, or _ROWS for the rows below. */
+  int32_t shape;
+  /* Rows of FIXPAIR_SHAPE_ROWS. */
+  size_t rows_len;
+  /* The caller's kernel; read for FIXPAIR_SHAPE_ROWS only. */
+  const struct fixpair_shape_row *rows;
+  /* Which species the particles are, see fixpair_species; NULL for all matter as one. */
+  const struct fixpair_species *species;
 } fixpair_conditions;
 
 /*
@@ -990,6 +1070,8 @@ typedef struct fixpair_control_variate {
   double gain;
 } fixpair_control_variate;
 
+
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -1217,7 +1299,8 @@ fixpair_status_t fixpair_fft_init_f32(struct fixpair_fft_f32 *fft,
  * In:  seed
  * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT
  */
-fixpair_status_t fixpair_realisation_init(struct fixpair_realisation *realisation, uint64_t seed);
+fixpair_status_t fixpair_realisation_init(struct fixpair_realisation *realisation,
+                                          uint64_t seed);
 
 /*
  * One block of Philox4x32-10 (Salmon et al. 2011), the generator of the native scheme, for draws of the host's own. The library
@@ -1238,6 +1321,12 @@ fixpair_status_t fixpair_philox4x32_10(uint32_t *output,
  * The phase is 2 pi u1 and the modulus sqrt(-ln u2), of two uniforms of 53 bits; fixing uses the same u1, so that fixed and
  * normal modes are matched. Self-conjugate modes are real. Single precision is the rounded double precision.
  *
+ * Schemes NGENIC and FASTPM draw u1 and u2, of 48 bits, from ranlxd1, seeded for each (i, j) with fixpair_ngenic_seeds, from l = 0
+ * upwards; u2 is drawn again while it is zero. w is the mode that N-GenIC, 2LPTic, 2LPTPNG, L-PICOLA or FastPM multiply by
+ * sqrt(P/V) in delta_k (they transform with exp(+i k.x), too). NGENIC has no modes with a mode number n/2, so that
+ * FIXPAIR_NYQUIST_FILLED is refused; FASTPM filled has FastPM's, and its self-conjugate modes keep sqrt(-ln u2) cos(2 pi u1).
+ * 2LPTic compares floating-point numbers with floor(Nsample/2): modes on the very boundary, which are drawn here, may be cut there.
+ *
  * Out: modes          len reals: modes of the brick
  * In:  brick          of Fourier space, any part of any mesh
  *      realisation
@@ -1245,7 +1334,9 @@ fixpair_status_t fixpair_philox4x32_10(uint32_t *output,
  *      exec           or NULL
  * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, _NOT_FINITE for a factor that is NaN,
  *          infinite, or within 16 times the largest number of the precision, or why the brick is refused
- * Cost: about 11 ns a mode and core with AVX2; no scratch
+ * Cost: native about 11 ns a mode and core with AVX2. The others about 17 ns for each mode from l = 0 to the brick's last, and,
+ *       before the cores share the rest, 20 ns for each of n^2 entries of the table of seeds, whatever the brick.
+ *       No scratch
  */
 fixpair_status_t fixpair_white_modes_f64(double *modes,
                                          size_t len,
@@ -1265,8 +1356,35 @@ fixpair_status_t fixpair_white_modes_f32(float *modes,
                                          const struct fixpair_exec *exec);
 
 /*
- * Imposes the realisation's amplitude, phase and Nyquist choice on unit modes that the host drew itself (its seed and scheme are
- * not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; DC becomes zero.
+ * The first numbers of GSL's ranlxd1, the generator of the schemes NGENIC and FASTPM: RANLUX in double precision at luxury
+ * level 1 (Luescher 1994), multiples of 2^-48 in [0, 1), for draws and checks of the host's own.
+ *
+ * Out: uniforms  len numbers
+ * In:  seed      as gsl_rng_set takes it: 0 counts as 1; otherwise the lower 32 bits are a signed number of which the magnitude's
+ *                lower 31 bits are taken
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT, FIXPAIR_ERROR_OVERFLOW
+ */
+fixpair_status_t fixpair_ranlxd1(double *uniforms,
+                                 size_t len,
+                                 uint64_t seed);
+
+/*
+ * The seeds of the streams of the schemes NGENIC and FASTPM: entries of N-GenIC's table for the brick's columns (i, j).
+ *
+ * Out: seeds  len = count[0] count[1] entries: that of the brick's row i and column j at i count[1] + j
+ * In:  brick  of Fourier space; its third axis does not matter
+ *      seed   of the realisation, as fixpair_ranlxd1 takes it
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, or why the brick is refused
+ * Cost: the whole table is drawn for any brick, about 20 ns for each of its n^2 entries; no scratch
+ */
+fixpair_status_t fixpair_ngenic_seeds(uint32_t *seeds,
+                                      size_t len,
+                                      const struct fixpair_brick *brick,
+                                      uint64_t seed);
+
+/*
+ * Imposes the realisation's amplitude, phase, Nyquist choice and selection on unit modes that the host drew itself (its seed and
+ * scheme are not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; DC and modes outside the selection become zero.
  *
  * In/Out: modes        len reals: Hermitian modes of the brick
  * In:     brick        of Fourier space
@@ -1289,7 +1407,7 @@ fixpair_status_t fixpair_impose_f32(float *modes,
 
 /*
  * Unit modes from the host's own real white noise (independent numbers of unit variance on the cells): transforms, multiplies by
- * n^(-3/2), and imposes amplitude, phase and Nyquist choice as fixpair_impose_f64. So any existing suite whose
+ * n^(-3/2), and imposes amplitude, phase, Nyquist choice and selection as fixpair_impose_f64. So any existing suite whose
  * noise is known on cells can be fixed and paired.
  *
  * In/Out: data         len = fft->length reals: white noise on the cells; on return modes
@@ -1351,8 +1469,9 @@ fixpair_status_t fixpair_expansion(double *e,
                                    const struct fixpair_cosmology *cosmology);
 
 /*
- * Growth D, f = dlnD/dlna, D2, f2 = dlnD2/dlna, by their differential equations, to 1e-8. D = 1 today; D2 is negative, near
- * -3/7 D^2: displacements are x = q - D grad phi1 + D2 grad phi2.
+ * Growth D, f = dlnD/dlna, D2, f2 = dlnD2/dlna, and those of the third order, by their differential equations, to 1e-8. D = 1 today; D2 is
+ * negative, near -3/7 D^2: displacements are x = q - D grad phi1 + D2 grad phi2 + third order. D3a, D3b and D3c are near -1/3, 5/21 and 1/7 D^3;
+ * fixpair_third_order_sources_f64 says which belongs to what.
  *
  * Out: growth     len structs
  * In:  a          len scale factors, 1e-5 to 10, in any order
@@ -1489,6 +1608,40 @@ fixpair_status_t fixpair_alpha_table(double *table,
                                      const struct fixpair_exec *exec);
 
 /*
+ * Species
+ * =======
+ */
+
+/*
+ * Fills a species without columns: set them all but `reference`.
+ *
+ * Out: species
+ * Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT
+ */
+fixpair_status_t fixpair_species_init(struct fixpair_species *species);
+
+/*
+ * One ratio of a species' columns by integer |n|^2, for hosts that put initial conditions together stage by stage: with
+ * fixpair_scale_modes_f64 it makes the modes of the species of those of total matter. Columns are interpolated as the linear
+ * spectrum is; below the first row the ratio is constant.
+ *
+ * Out: table    table_len = fixpair_mode_table_length(n) factors; entry 0 is 0
+ * In:  species
+ *      ratio    FIXPAIR_RATIO_MATTER, _DENSITY or _VELOCITY
+ *      n, L     side of the mesh in cells and of the box in Mpc/h
+ *      exec     or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _VERSION, _CHOICE, _NOT_FINITE, _RANGE, _TABLE for columns that are not positive or k that
+ *          does not increase, _MESH_SIZE, _OVERFLOW, _HOOK
+ */
+fixpair_status_t fixpair_species_table(double *table,
+                                       size_t table_len,
+                                       const struct fixpair_species *species,
+                                       int32_t ratio,
+                                       size_t n,
+                                       double box_size,
+                                       const struct fixpair_exec *exec);
+
+/*
  * Initial conditions in one call
  * ==============================
  */
@@ -1505,15 +1658,16 @@ fixpair_status_t fixpair_conditions_init(struct fixpair_conditions *conditions,
                                          uint64_t seed);
 
 /*
- * Scratch of fixpair_initial_conditions_f64: at second order one mesh of fft->length reals and two of fine->length, or four of
- * fft->length without `fine`; at first order one of each, or two of fft->length. And 16 bytes for each |n|^2 up to 3 (n/2)^2 and
- * 8 for each plane, each array rounded up to 64 bytes. Second order with a `fine` of 3/2 the side: 63 bytes a cell (f32: 32); without
- * it 33 (17).
+ * Scratch of fixpair_initial_conditions_f64. With f = fft->length and m = fine->length, or f without `fine`, in reals: at first order
+ * f + m, or 3 f + m for a species; at second f + m + max(2 f, m); at third 18 f + m; with a shape other than local 2 f + 2 m, if that is more. And,
+ * with n the side of fft, 8 bytes for each |n|^2 up to 3 (n/2)^2 in 2 tables, 1 more for such a shape, 2 more for a species; 8 for each plane; 16
+ * for each of n/2 + 1 at third order; each array rounded up to 64 bytes. Second order with a `fine` of 3/2 the side: 63 bytes a cell (f32: 32);
+ * without it 33 (17). Third order without it: 155 (78).
  *
  * Out: scratch
- * In:  conditions  only the order is read
+ * In:  conditions  its order, its shape with its rows, and whether it has a species
  *      fft, fine   as fixpair_initial_conditions_f64
- * Returns: 0, FIXPAIR_ERROR_NULL, _VERSION, _CHOICE, _OVERFLOW, or why a hook is refused
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _VERSION, _CHOICE, _OVERFLOW, or why a hook is refused
  */
 fixpair_status_t fixpair_initial_conditions_scratch_f64(struct fixpair_layout *scratch,
                                                         const struct fixpair_conditions *conditions,
@@ -1527,7 +1681,7 @@ fixpair_status_t fixpair_initial_conditions_scratch_f32(struct fixpair_layout *s
                                                         const struct fixpair_fft_f32 *fine);
 
 /*
- * One call from a seed to particles: Fixed, Paired or Matched initial conditions with local primordial non-Gaussianity, in the only right order:
+ * One call from a seed to particles: Fixed, Paired or Matched initial conditions with primordial non-Gaussianity, in the only right order:
  * noise -> fix -> invert -> colour -> PNG -> transfer -> displace.
  *
  * One particle for each cell of fft->configuration, numbered with z fastest; ids from fixpair_particle_ids. Two calls that differ in
@@ -1537,7 +1691,8 @@ fixpair_status_t fixpair_initial_conditions_scratch_f32(struct fixpair_layout *s
  *      velocity    peculiar, km/s (Gadget files store it divided by sqrt(a)): the same length
  * In:  conditions
  *      fft         the transform; its bricks decide which part of the mesh and so which particles this process makes
- *      fine        a transform of side 3n/2 or more (2n with g_nl), on which products are free of aliasing; NULL to let them alias.
+ *      fine        a transform of side 3n/2 or more (2n with g_nl), on which products are free of aliasing; NULL to let f_nl, g_nl and
+ *                  the second order alias. FIXPAIR_ORDER_THIRD does without: its products, those of the second order too, never alias.
  *                  On more than one process, each must hold the same modes of both meshes below n/2: the slabs that FFTW-MPI deals out
  *                  for two sides do not
  *      scratch     scratch_len bytes, see fixpair_initial_conditions_scratch_f64
@@ -1545,7 +1700,8 @@ fixpair_status_t fixpair_initial_conditions_scratch_f32(struct fixpair_layout *s
  * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _TABLE, _SCRATCH, _CHOICE, _VERSION, _CONVERGENCE, _OVERFLOW,
  *          _MESH_SIZE, _BRICK for a `fine` that is too small; after FIXPAIR_ERROR_HOOK, or FIXPAIR_ERROR_NOT_FINITE from fields that overflow, position and
  *          velocity are undefined; on several processes NOT_FINITE may be the answer of some only
- * Cost: at second order 13 transforms of fft, or 6 of it and 8 of fine; 2 more with f_nl or g_nl
+ * Cost: at second order 13 transforms of fft, or 6 of it and 8 of fine; 2 more with local f_nl or g_nl, 7 or 14 with other shapes; at third
+ *       198 transforms of fft
  */
 fixpair_status_t fixpair_initial_conditions_f64(const struct fixpair_components_f64 *position,
                                                 const struct fixpair_components_f64 *velocity,
@@ -1565,6 +1721,69 @@ fixpair_status_t fixpair_initial_conditions_f32(const struct fixpair_components_
                                                 void *scratch,
                                                 size_t scratch_len,
                                                 const struct fixpair_exec *exec);
+
+/*
+ * Initial conditions at the host's own positions
+ * ==============================================
+ */
+
+/*
+ * Scratch of fixpair_initial_conditions_at_f64: that of fixpair_initial_conditions_f64 and that of fixpair_read_out_f64 with FIXPAIR_WINDOW_CIC.
+ *
+ * Out: scratch
+ * In:  conditions  its order, its shape with its rows, and whether it has a species
+ *      particles   as many as will be passed, or more
+ *      fft, fine   as fixpair_initial_conditions_at_f64
+ * Returns: as fixpair_initial_conditions_scratch_f64, and FIXPAIR_ERROR_BRICK for a mesh that is not whole
+ */
+fixpair_status_t fixpair_initial_conditions_at_scratch_f64(struct fixpair_layout *scratch,
+                                                           const struct fixpair_conditions *conditions,
+                                                           size_t particles,
+                                                           const struct fixpair_fft_f64 *fft,
+                                                           const struct fixpair_fft_f64 *fine);
+
+/* fixpair_initial_conditions_at_scratch_f64 in single precision. */
+fixpair_status_t fixpair_initial_conditions_at_scratch_f32(struct fixpair_layout *scratch,
+                                                           const struct fixpair_conditions *conditions,
+                                                           size_t particles,
+                                                           const struct fixpair_fft_f32 *fft,
+                                                           const struct fixpair_fft_f32 *fine);
+
+/*
+ * fixpair_initial_conditions_f64 for particles that do not begin on the lattice of the mesh: a glass, another lattice, another number of them. The
+ * displacements are made on the mesh of `fft`, which must be whole, and read out by cloud in cell at the pre-initial positions q: x = q + Psi(q).
+ *
+ * The read-out multiplies modes of the displacement by sinc^2(k_a H/2) on each axis, H = L/n: at half the Nyquist frequency along an axis by 0.81;
+ * with a mesh of twice the side by 0.95. On slabs, make the meshes by fixpair_displacement_f64, exchange ghost planes, and read out by fixpair_read_out_f64.
+ *
+ * Out: position     Mpc/h, in [0, L), one for each of pre_initial
+ *      velocity     peculiar, km/s: the same length
+ * In:  pre_initial  q in Mpc/h, any finite numbers, taken periodically; shares no memory with position and velocity
+ *      conditions, fft, fine, scratch, exec as fixpair_initial_conditions_f64
+ * Returns: as fixpair_initial_conditions_f64, and FIXPAIR_ERROR_BRICK for a mesh that is not whole; after FIXPAIR_ERROR_NOT_FINITE for a
+ *          position of pre_initial outputs are undefined too
+ * Cost: that of fixpair_initial_conditions_f64, and 6 read-outs, 3 at first order
+ */
+fixpair_status_t fixpair_initial_conditions_at_f64(const struct fixpair_components_f64 *position,
+                                                   const struct fixpair_components_f64 *velocity,
+                                                   const struct fixpair_positions_f64 *pre_initial,
+                                                   const struct fixpair_conditions *conditions,
+                                                   const struct fixpair_fft_f64 *fft,
+                                                   const struct fixpair_fft_f64 *fine,
+                                                   void *scratch,
+                                                   size_t scratch_len,
+                                                   const struct fixpair_exec *exec);
+
+/* fixpair_initial_conditions_at_f64 in single precision. */
+fixpair_status_t fixpair_initial_conditions_at_f32(const struct fixpair_components_f32 *position,
+                                                   const struct fixpair_components_f32 *velocity,
+                                                   const struct fixpair_positions_f32 *pre_initial,
+                                                   const struct fixpair_conditions *conditions,
+                                                   const struct fixpair_fft_f32 *fft,
+                                                   const struct fixpair_fft_f32 *fine,
+                                                   void *scratch,
+                                                   size_t scratch_len,
+                                                   const struct fixpair_exec *exec);
 
 /*
  * Initial conditions stage by stage
@@ -1750,6 +1969,113 @@ fixpair_status_t fixpair_displacement_f32(float *psi,
                                           double scale,
                                           const struct fixpair_fft_f32 *fft,
                                           const struct fixpair_exec *exec);
+
+/*
+ * Third order
+ * ===========
+ */
+
+/*
+ * Scratch of fixpair_third_order_sources_f64: 12 meshes of fft->length reals, and 16 bytes for each of n/2 + 1, n the side, each array
+ * rounded up to 64 bytes. 96 bytes a cell (f32: 48), and rows' padding.
+ *
+ * Out: scratch
+ * In:  fft
+ * Returns: 0, FIXPAIR_ERROR_NULL, _OVERFLOW, or why the hook is refused
+ */
+fixpair_status_t fixpair_third_order_sources_scratch_f64(struct fixpair_layout *scratch,
+                                                         const struct fixpair_fft_f64 *fft);
+
+/* fixpair_third_order_sources_scratch_f64 in single precision. */
+fixpair_status_t fixpair_third_order_sources_scratch_f32(struct fixpair_layout *scratch,
+                                                         const struct fixpair_fft_f32 *fft);
+
+/*
+ * The modes of the sources of the second and third orders, without aliasing and without a larger mesh, so that slabs need no exchange (Patterson &
+ * Orszag 1971: the mean over eight meshes shifted by half cells). With p_ab and q_ab the second differences of the potentials whose
+ * Laplacians are delta and S:
+ *
+ * S = sum_a<b (p_aa p_bb - p_ab^2), A = det p, B = p_aa q_bb - p_ab q_ab (summed), C_i = eps_ijk p_lj q_lk,
+ *
+ * and the displacements are Psi2_k = -(D2/D^2) i k/k^2 S, Psi3a_k = (D3a/D^3) i k/k^2 A, Psi3b_k = (D3b/D^3) i k/k^2 B by
+ * fixpair_displacement_f64, and Psi3c_k = (D3c/D^3) i k x C/k^2 by fixpair_transverse_displacement_f64 (Bouchet et al. 1995, astro-ph/9406013;
+ * Michaux et al. 2021, arXiv:2008.09588); the D are those of fixpair_growth_factors.
+ *
+ * Out: second           len reals, as many as fft->fourier needs or more: modes of S
+ *      determinant      the same for A
+ *      mixed            the same for B
+ *      curl_x, _y, _z   the same for the components of C
+ * In:  density          the same for delta
+ *      fft              the transform
+ *      scratch          scratch_len bytes, see fixpair_third_order_sources_scratch_f64
+ *      exec             or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _SCRATCH, _OVERFLOW, or why the hook is refused; after FIXPAIR_ERROR_HOOK outputs are
+ *          undefined
+ * Cost: 192 transforms, which with the passes between them take as long as about 300
+ */
+fixpair_status_t fixpair_third_order_sources_f64(double *second,
+                                                 double *determinant,
+                                                 double *mixed,
+                                                 double *curl_x,
+                                                 double *curl_y,
+                                                 double *curl_z,
+                                                 const double *density,
+                                                 size_t len,
+                                                 const struct fixpair_fft_f64 *fft,
+                                                 void *scratch,
+                                                 size_t scratch_len,
+                                                 const struct fixpair_exec *exec);
+
+/* fixpair_third_order_sources_f64 in single precision. */
+fixpair_status_t fixpair_third_order_sources_f32(float *second,
+                                                 float *determinant,
+                                                 float *mixed,
+                                                 float *curl_x,
+                                                 float *curl_y,
+                                                 float *curl_z,
+                                                 const float *density,
+                                                 size_t len,
+                                                 const struct fixpair_fft_f32 *fft,
+                                                 void *scratch,
+                                                 size_t scratch_len,
+                                                 const struct fixpair_exec *exec);
+
+/*
+ * One component of the transverse displacement of the third order: modes scale i (n x C)_axis/|n|^2, n = k L/(2 pi), brought to the cells.
+ * With scale (D3c/D^3) L/(2 pi) this is Psi3c, in the unit of L.
+ *
+ * Out: psi              psi_len = fft->length reals: one component on the cells of fft->configuration
+ * In:  curl_x, _y, _z   curl_len reals each: modes of C on fft->fourier
+ *      axis             0, 1, 2
+ *      scale
+ *      fft              the transform
+ *      exec             or NULL
+ * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE for an axis above 2, _NOT_FINITE, or why the hook is refused; after
+ *          FIXPAIR_ERROR_HOOK psi is undefined
+ * Cost: 1 transform
+ */
+fixpair_status_t fixpair_transverse_displacement_f64(double *psi,
+                                                     size_t psi_len,
+                                                     const double *curl_x,
+                                                     const double *curl_y,
+                                                     const double *curl_z,
+                                                     size_t curl_len,
+                                                     size_t axis,
+                                                     double scale,
+                                                     const struct fixpair_fft_f64 *fft,
+                                                     const struct fixpair_exec *exec);
+
+/* fixpair_transverse_displacement_f64 in single precision. */
+fixpair_status_t fixpair_transverse_displacement_f32(float *psi,
+                                                     size_t psi_len,
+                                                     const float *curl_x,
+                                                     const float *curl_y,
+                                                     const float *curl_z,
+                                                     size_t curl_len,
+                                                     size_t axis,
+                                                     double scale,
+                                                     const struct fixpair_fft_f32 *fft,
+                                                     const struct fixpair_exec *exec);
 
 /*
  * Particles

@@ -77,19 +77,17 @@ static int check_particles(const char *path, const struct gadget_particles *part
     return 0;
 }
 
-int gadget_write(const char *path, const struct gadget_universe *universe, const struct gadget_particles *particles,
-                 size_t id_bytes) {
-    struct gadget_header header;
+int gadget_write_file(const char *path, const struct gadget_header *header, const struct gadget_particles *particles, double length,
+                      double velocity, size_t id_bytes) {
     if (check_particles(path, particles, id_bytes) != 0) return 1;
     FILE *stream = fopen(path, "wb");
     if (stream == NULL) return complain(path, strerror(errno));
 
-    make_header(&header, universe, particles->count);
-    write_marker(stream, sizeof header);
-    fwrite(&header, sizeof header, 1, stream);
-    write_marker(stream, sizeof header);
-    write_vectors(stream, particles->position, particles->count, universe->unit, header.box_size);
-    write_vectors(stream, particles->velocity, particles->count, 1.0 / sqrt(header.time), 0.0);
+    write_marker(stream, sizeof *header);
+    fwrite(header, sizeof *header, 1, stream);
+    write_marker(stream, sizeof *header);
+    write_vectors(stream, particles->position, particles->count, length, header->box_size);
+    write_vectors(stream, particles->velocity, particles->count, velocity, 0.0);
     write_ids(stream, particles->id, particles->count, id_bytes);
 
     int failed = ferror(stream);
@@ -101,8 +99,14 @@ int gadget_write(const char *path, const struct gadget_universe *universe, const
     return 0;
 }
 
-/* Reads a record of `bytes` with its two markers. Returns 0 if that is what stands there. */
-static int read_record(FILE *stream, void *data, size_t bytes) {
+int gadget_write(const char *path, const struct gadget_universe *universe, const struct gadget_particles *particles,
+                 size_t id_bytes) {
+    struct gadget_header header;
+    make_header(&header, universe, particles->count);
+    return gadget_write_file(path, &header, particles, universe->unit, 1.0 / sqrt(header.time), id_bytes);
+}
+
+int gadget_read_record(FILE *stream, void *data, size_t bytes) {
     uint32_t before, after;
     if (fread(&before, sizeof before, 1, stream) != 1 || before != bytes) return 1;
     if (fread(data, 1, bytes, stream) != bytes) return 1;
@@ -127,7 +131,7 @@ static int read_ids(struct gadget_file *file, FILE *stream) {
 }
 
 static int read_records(struct gadget_file *file, const char *path, FILE *stream) {
-    if (read_record(stream, &file->header, sizeof file->header) != 0) return complain(path, "no header of Gadget format 1");
+    if (gadget_read_record(stream, &file->header, sizeof file->header) != 0) return complain(path, "no header of Gadget format 1");
     for (int type = 0; type < 6; type++) {
         if (type != HALO && file->header.npart[type] != 0) return complain(path, "particles of a type other than 1");
     }
@@ -141,8 +145,8 @@ static int read_records(struct gadget_file *file, const char *path, FILE *stream
     file->velocity = malloc(bytes);
     file->id = malloc(file->count * sizeof *file->id);
     if (file->position == NULL || file->velocity == NULL || file->id == NULL) return complain(path, "no memory left");
-    if (read_record(stream, file->position, bytes) != 0) return complain(path, "the record of positions is broken");
-    if (read_record(stream, file->velocity, bytes) != 0) return complain(path, "the record of velocities is broken");
+    if (gadget_read_record(stream, file->position, bytes) != 0) return complain(path, "the record of positions is broken");
+    if (gadget_read_record(stream, file->velocity, bytes) != 0) return complain(path, "the record of velocities is broken");
     if (read_ids(file, stream) != 0) return complain(path, "the record of ids is broken");
     if (fgetc(stream) != EOF) return complain(path, "something follows the ids");
     return 0;

@@ -1,8 +1,9 @@
 /*
  * Gadget-2 files of format 1: dark-matter particles of one mass, type 1 (the "halo" slot), in one file.
  *
- * A file is four records, each between two copies of its length in bytes (uint32): the header of 256 bytes, then for all particles
- * positions (3 floats), velocities (3 floats), ids (4 or 8 bytes). Byte order is the machine's; readers look at the first four bytes.
+ * A file is four records, each between two copies of its length in bytes (uint32): the header of 256 bytes, then for all
+ * particles positions (3 floats), velocities (3 floats), ids (4 or 8 bytes). Byte order is the machine's; readers look at the
+ * first four bytes.
  *
  * Units: masses 1e10 Msun/h; velocities the peculiar one over sqrt(a), km/s; lengths kpc/h, the unit of Gadget's own examples
  * and what readers assume who do not ask. Who runs Gadget with UnitLength_in_cm = 3.085678e24 takes GADGET_MPC.
@@ -13,6 +14,7 @@
 
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 
 /* Lengths of the file in one Mpc/h. */
 #define GADGET_KPC 1000.0
@@ -76,6 +78,13 @@ int gadget_write(const char *path, const struct gadget_universe *universe, const
                  size_t id_bytes);
 
 /*
+ * Writes a file of any units, one of a snapshot of several too: the header as it is, positions times `length`, at or beyond
+ * header->box_size brought to 0, and velocities times `velocity`. The same otherwise.
+ */
+int gadget_write_file(const char *path, const struct gadget_header *header, const struct gadget_particles *particles, double length,
+                      double velocity, size_t id_bytes);
+
+/*
  * Reads a file of this machine's byte order that holds particles of type 1 only. Returns 0, or 1 after saying what is wrong; in
  * both cases gadget_close gives the memory back, as it does for a struct of zeros.
  */
@@ -86,6 +95,9 @@ int gadget_read(struct gadget_file *file, const char *path);
  * 0 if neither does.
  */
 double gadget_unit(const struct gadget_header *header);
+
+/* Reads the next record of a file, of `bytes` between two markers. Returns 0 if that is what stands there. */
+int gadget_read_record(FILE *stream, void *data, size_t bytes);
 
 void gadget_close(struct gadget_file *file);
 

@@ -240,8 +240,9 @@ fn map(out: &mut [f64], input: &[f64], f: impl Fn(f64) -> Result<f64>) -> Result
     Ok(())
 }
 
-/// Growth D, f = dlnD/dlna, D2, f2 = dlnD2/dlna, by their differential equations, to 1e-8. D = 1 today; D2 is negative, near
-/// -3/7 D^2: displacements are x = q - D grad phi1 + D2 grad phi2.
+/// Growth D, f = dlnD/dlna, D2, f2 = dlnD2/dlna, and those of the third order, by their differential equations, to 1e-8. D = 1 today; D2 is
+/// negative, near -3/7 D^2: displacements are x = q - D grad phi1 + D2 grad phi2 + third order. D3a, D3b and D3c are near -1/3, 5/21 and 1/7 D^3;
+/// fixpair_third_order_sources_f64 says which belongs to what.
 ///
 /// Out: growth     len structs
 /// In:  a          len scale factors, 1e-5 to 10, in any order

@@ -8,6 +8,7 @@ use super::exec::{HostExec, fixpair_exec};
 use super::fft::{Hook, HostFft, fixpair_fft_f32, fixpair_fft_f64};
 use super::noise::fixpair_realisation;
 use super::particles::{Triple, components, fixpair_components_f32, fixpair_components_f64};
+use super::shape::FIXPAIR_SHAPE_ROWS;
 use super::species::{fixpair_species, optional_species};
 use super::status::{code, fixpair_status_t};
 use crate::cosmology::{Convention, Cosmology};
@@ -20,9 +21,6 @@ use crate::initial::shape::{Shape, ShapeRow};
 use crate::real::Real;
 use crate::scratch::Layout;
 use crate::status::{Error, Result};
-
-/// The caller's own kernel: see fixpair_shape_row.
-pub const FIXPAIR_SHAPE_ROWS: i32 = 5;
 
 /// Zel'dovich displacements.
 pub const FIXPAIR_ORDER_FIRST: i32 = 1;
@@ -168,16 +166,16 @@ impl fixpair_conditions {
     }
 }
 
-/// Scratch of fixpair_initial_conditions_f64. With n = fft->length and m = fine->length, or n without `fine`, in reals: at second order
-/// n + m + max(2 n, m), at first n + m, or 3 n + m for a species, at third 18 n + m; with a shape other than local at least 2 n + 2 m. And 8 bytes
-/// for each |n|^2 up to 3 (n/2)^2 in 2 tables, 1 more for such a shape, 2 more for a species, 8 for each plane, 8 n at third order; each array
-/// rounded up to 64 bytes. Second order with a `fine` of 3/2 the side: 63 bytes a cell (f32: 32); without it 33 (17). Third order
-/// without it: 155 (78).
+/// Scratch of fixpair_initial_conditions_f64. With f = fft->length and m = fine->length, or f without `fine`, in reals: at first order
+/// f + m, or 3 f + m for a species; at second f + m + max(2 f, m); at third 18 f + m; with a shape other than local 2 f + 2 m, if that is more. And,
+/// with n the side of fft, 8 bytes for each |n|^2 up to 3 (n/2)^2 in 2 tables, 1 more for such a shape, 2 more for a species; 8 for each plane; 16
+/// for each of n/2 + 1 at third order; each array rounded up to 64 bytes. Second order with a `fine` of 3/2 the side: 63 bytes a cell (f32: 32);
+/// without it 33 (17). Third order without it: 155 (78).
 ///
 /// Out: scratch
 /// In:  conditions  its order, its shape with its rows, and whether it has a species
 ///      fft, fine   as fixpair_initial_conditions_f64
-/// Returns: 0, FIXPAIR_ERROR_NULL, _VERSION, _CHOICE, _OVERFLOW, or why a hook is refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _VERSION, _CHOICE, _OVERFLOW, or why a hook is refused
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.

@@ -40,10 +40,12 @@ pub mod pre_initial;
 pub mod resample;
 pub mod run;
 pub mod scatter;
+pub mod shape;
 pub mod species;
 pub mod spheres;
 pub mod stages;
 pub mod status;
+pub mod third;
 pub mod triangles;
 
 mod border;

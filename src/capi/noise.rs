@@ -7,7 +7,10 @@ use super::mesh::fixpair_brick;
 use super::status::{code, fixpair_status_t};
 use crate::fft::Fft3;
 use crate::noise::philox::philox4x32_10;
-use crate::noise::{Realisation, impose, unit_modes_from_field, white_modes, white_modes_coloured};
+use crate::noise::ranlux::Ranlxd1;
+use crate::noise::{
+    Realisation, impose, ngenic_seeds, unit_modes_from_field, white_modes, white_modes_coloured,
+};
 use crate::real::Real;
 use crate::status::{Error, Result};
 
@@ -138,6 +141,12 @@ pub unsafe extern "C" fn fixpair_philox4x32_10(
 /// The phase is 2 pi u1 and the modulus sqrt(-ln u2), of two uniforms of 53 bits; fixing uses the same u1, so that fixed and
 /// normal modes are matched. Self-conjugate modes are real. Single precision is the rounded double precision.
 ///
+/// Schemes NGENIC and FASTPM draw u1 and u2, of 48 bits, from ranlxd1, seeded for each (i, j) with fixpair_ngenic_seeds, from l = 0
+/// upwards; u2 is drawn again while it is zero. w is the mode that N-GenIC, 2LPTic, 2LPTPNG, L-PICOLA or FastPM multiply by
+/// sqrt(P/V) in delta_k (they transform with exp(+i k.x), too). NGENIC has no modes with a mode number n/2, so that
+/// FIXPAIR_NYQUIST_FILLED is refused; FASTPM filled has FastPM's, and its self-conjugate modes keep sqrt(-ln u2) cos(2 pi u1).
+/// 2LPTic compares floating-point numbers with floor(Nsample/2): modes on the very boundary, which are drawn here, may be cut there.
+///
 /// Out: modes          len reals: modes of the brick
 /// In:  brick          of Fourier space, any part of any mesh
 ///      realisation
@@ -145,7 +154,9 @@ pub unsafe extern "C" fn fixpair_philox4x32_10(
 ///      exec           or NULL
 /// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _CHOICE, _VERSION, _HOOK, _NOT_FINITE for a factor that is NaN,
 ///          infinite, or within 16 times the largest number of the precision, or why the brick is refused
-/// Cost: about 11 ns a mode and core with AVX2; no scratch
+/// Cost: native about 11 ns a mode and core with AVX2. The others about 17 ns for each mode from l = 0 to the brick's last, and,
+///       before the cores share the rest, 20 ns for each of n^2 entries of the table of seeds, whatever the brick.
+///       No scratch
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.
@@ -181,6 +192,52 @@ pub unsafe extern "C" fn fixpair_white_modes_f32(
     code(unsafe { white(modes, len, brick, realisation, amplitude, amplitude_len, exec) })
 }
 
+/// The first numbers of GSL's ranlxd1, the generator of the schemes NGENIC and FASTPM: RANLUX in double precision at luxury
+/// level 1 (Luescher 1994), multiples of 2^-48 in [0, 1), for draws and checks of the host's own.
+///
+/// Out: uniforms  len numbers
+/// In:  seed      as gsl_rng_set takes it: 0 counts as 1; otherwise the lower 32 bits are a signed number of which the magnitude's
+///                lower 31 bits are taken
+/// Returns: 0, FIXPAIR_ERROR_NULL, FIXPAIR_ERROR_ALIGNMENT, FIXPAIR_ERROR_OVERFLOW
+///
+/// # Safety
+/// `uniforms` is null or points to `len` numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_ranlxd1(uniforms: *mut f64, len: usize, seed: u64) -> fixpair_status_t {
+    code((|| {
+        // SAFETY: the caller's promise.
+        let uniforms = unsafe { Border::new().write(uniforms, len) }?;
+        let mut stream = Ranlxd1::new(seed);
+        uniforms.fill_with(|| stream.uniform());
+        Ok(())
+    })())
+}
+
+/// The seeds of the streams of the schemes NGENIC and FASTPM: entries of N-GenIC's table for the brick's columns (i, j).
+///
+/// Out: seeds  len = count[0] count[1] entries: that of the brick's row i and column j at i count[1] + j
+/// In:  brick  of Fourier space; its third axis does not matter
+///      seed   of the realisation, as fixpair_ranlxd1 takes it
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, or why the brick is refused
+/// Cost: the whole table is drawn for any brick, about 20 ns for each of its n^2 entries; no scratch
+///
+/// # Safety
+/// Pointers are null or point to as many values as stated.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fixpair_ngenic_seeds(
+    seeds: *mut u32,
+    len: usize,
+    brick: *const fixpair_brick,
+    seed: u64,
+) -> fixpair_status_t {
+    code((|| {
+        let mut border = Border::new();
+        // SAFETY: the caller's promise.
+        let (seeds, brick) = unsafe { (border.write(seeds, len)?, border.read_one(brick)?.check()?) };
+        ngenic_seeds(seeds, &brick, seed)
+    })())
+}
+
 unsafe fn white<T: Real>(
     modes: *mut T,
     len: usize,
@@ -205,8 +262,8 @@ unsafe fn white<T: Real>(
     }
 }
 
-/// Imposes the realisation's amplitude, phase and Nyquist choice on unit modes that the host drew itself (its seed and scheme are
-/// not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; DC becomes zero.
+/// Imposes the realisation's amplitude, phase, Nyquist choice and selection on unit modes that the host drew itself (its seed and
+/// scheme are not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; DC and modes outside the selection become zero.
 ///
 /// In/Out: modes        len reals: Hermitian modes of the brick
 /// In:     brick        of Fourier space
@@ -256,13 +313,13 @@ unsafe fn imposed<T: Real>(
     unsafe {
         let modes = border.write(modes, len)?;
         let brick = border.read_one(brick)?.check()?;
-        let Realisation { amplitude, phase, nyquist, .. } = border.read_one(realisation)?.check()?;
-        impose(modes, &brick, amplitude, phase, nyquist, &HostExec::new(&mut border, exec)?)
+        let realisation = border.read_one(realisation)?.check()?;
+        impose(modes, &brick, &realisation, &HostExec::new(&mut border, exec)?)
     }
 }
 
 /// Unit modes from the host's own real white noise (independent numbers of unit variance on the cells): transforms, multiplies by
-/// n^(-3/2), and imposes amplitude, phase and Nyquist choice as fixpair_impose_f64. So any existing suite whose
+/// n^(-3/2), and imposes amplitude, phase, Nyquist choice and selection as fixpair_impose_f64. So any existing suite whose
 /// noise is known on cells can be fixed and paired.
 ///
 /// In/Out: data         len = fft->length reals: white noise on the cells; on return modes
@@ -314,8 +371,8 @@ unsafe fn from_field<H: Hook>(
     unsafe {
         let data = border.write(data, len)?;
         let mut fft = HostFft::new(&mut border, fft)?;
-        let Realisation { amplitude, phase, nyquist, .. } = border.read_one(realisation)?.check()?;
+        let realisation = border.read_one(realisation)?.check()?;
         let fft: &mut dyn Fft3<H::Real> = &mut fft;
-        unit_modes_from_field(fft, data, amplitude, phase, nyquist, &HostExec::new(&mut border, exec)?)
+        unit_modes_from_field(fft, data, &realisation, &HostExec::new(&mut border, exec)?)
     }
 }

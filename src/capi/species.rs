@@ -13,8 +13,9 @@ pub const FIXPAIR_RATIO_DENSITY: i32 = 1;
 /// V_s/T_m: from modes of total matter to v_s/(a H i k/k^2).
 pub const FIXPAIR_RATIO_VELOCITY: i32 = 2;
 
-/// One species of matter, cold dark matter or baryons, from the columns of CAMB or CLASS at the time of the particles, in any common unit. Called
-/// once for each species with one seed, initial conditions are matched: the same phases, and the same moduli over their r.m.s.
+/// One species of matter, cold dark matter or baryons, from the columns of CAMB or CLASS at the time of the particles, in any common unit, all
+/// positive. `linear` of the conditions stays that of total matter. Called once for each species with one seed, initial conditions are matched:
+/// the same phases, and the same moduli over their r.m.s.
 ///
 /// delta_s = (T_s/T_m) delta_m and v_s,k = a H i k/k^2 (V_s/T_m) delta_m,k at first order; the second and third orders are those of total
 /// matter, whose gravity moves both. What this leaves out: the coupling of the difference of the species at second order, isocurvature
@@ -25,7 +26,7 @@ pub const FIXPAIR_RATIO_VELOCITY: i32 = 2;
 pub struct fixpair_species {
     /// sizeof(fixpair_species).
     pub struct_size: usize,
-    /// Rows of each column.
+    /// Rows of each column, 2 or more.
     pub rows: usize,
     /// h/Mpc, increasing.
     pub k: *const f64,
@@ -33,7 +34,8 @@ pub struct fixpair_species {
     pub matter: *const f64,
     /// T_s of the species: T_m itself, or that of matter without neutrinos, if there is but one.
     pub density: *const f64,
-    /// V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or _baryon times k^2 in the unit of its other columns. CLASS: -theta_s/(a H).
+    /// V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it is, for all its columns are over k^2.
+    /// CLASS: -theta_s/(a H), theta_s of the Newtonian gauge, or theta_s + alpha k^2 of the synchronous; its columns are negative: change all signs.
     pub velocity: *const f64,
     /// What the linear spectrum, scaled back with D(a) of the background, stands for: T_m(k, z = 0) D(a). Then growth that depends on k is
     /// accounted for, and modes of total matter are T_m(k, a). NULL for T_m itself: growth as of the background.

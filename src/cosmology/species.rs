@@ -7,8 +7,8 @@
 //! delta_s = (T_s/T_m) delta_m,     v_s,k = a H i k/k^2 (V_s/T_m) delta_m,k
 //!
 //! so that V_s = f T_s where growth does not depend on k. CAMB's columns "v_newtonian_cdm" and "v_newtonian_baryon", -v k/H of a conformal H, are
-//! V_s in the unit in which its other columns over k^2 are T; of CLASS, V_s = -theta_s/H is taken with its d_m and d_s (conformal H, synchronous
-//! gauge needs theta_s + alpha k^2 instead).
+//! V_s as they are: CAMB divides all its columns by k^2. Of CLASS, V_s = -theta_s/H is taken with its d_m and d_s (conformal H; the synchronous
+//! gauge needs theta_s + alpha k^2 instead), all with the other sign, for its columns are those of a positive curvature, and negative.
 //!
 //! A column `reference` takes growth that depends on k into account, massive neutrinos' or any other: it is what the linear spectrum, scaled
 //! back with D of the background alone, stands for. With T_m(k, 0) D(a) there, modes of total matter are T_m(k, a)/(T_m(k, 0) D(a)) times those of

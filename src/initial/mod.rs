@@ -21,4 +21,12 @@ mod tests;
 #[cfg(test)]
 mod tests_parts;
 #[cfg(test)]
+mod tests_shapes;
+#[cfg(test)]
+mod tests_shapes_estimate;
+#[cfg(test)]
+mod tests_shapes_templates;
+#[cfg(test)]
+mod tests_third;
+#[cfg(test)]
 mod tests_whole;

@@ -15,7 +15,7 @@ use crate::reference::transform::Slow;
 use crate::status::Error;
 
 /// Modes of some real field without mean and Nyquist modes: those of a deterministic jumble on the cells.
-fn jumble(n: usize, salt: u64) -> Vec<f64> {
+pub(super) fn jumble(n: usize, salt: u64) -> Vec<f64> {
     let mut fft = Slow::new(n);
     let brick = Brick::whole(n, Space::Fourier).unwrap();
     let mut state = salt.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;

@@ -16,11 +16,14 @@
 //!
 //! All products are exact, by [`super::shifted`]: S as well, unlike that of [`super::lpt`], whose aliasing the work mesh decides.
 
+use super::lpt::InverseGradient;
+use super::modes::{add_modes, map_modes};
 use super::shifted::{HalfCells, SHIFTS, gather_shift, half_cells_length, tidal_tensor};
 use crate::exec::Exec;
 use crate::fft::Fft3;
 use crate::mesh::Brick;
 use crate::real::Real;
+use crate::scratch::Layout;
 use crate::status::{Error, Result};
 use crate::walk::walk;
 
@@ -115,6 +118,49 @@ pub fn third_order_sources<T: Real>(
         gather_shift(sums, [a, b, c, d, e], &modes, scale, shift, half_cells, exec)?;
     }
     Ok(())
+}
+
+/// Scratch of [`second_order_exact`] followed by [`third_order_sources`]: twelve meshes and the table.
+///
+/// # Errors
+/// `Overflow` if the bytes do not fit the address space.
+pub fn third_order_scratch<T: Real>(fft: &dyn Fft3<T>) -> Result<Layout> {
+    let table = Layout::EMPTY.and::<[f64; 2]>(half_cells_length(fft.configuration().n()))?;
+    (0..THIRD_ORDER_MESHES).try_fold(table, |layout, _| layout.and::<T>(fft.length()))
+}
+
+/// One component of the transverse displacement: out_k <- `scale` i (n x C_k)_axis/|n|^2, then to configuration space. With `scale` =
+/// (D3c/D^3) L/(2 pi) this is Psi3c in units of L.
+///
+/// `out`: `fft.length()` reals, on return one component on the cells of `fft`; `curl`: modes of C on its Fourier brick.
+///
+/// # Errors
+/// `Range` for an axis above 2, `NotFinite` for the scale, `Length`, or what `fft` returns.
+///
+/// Cost: two passes and one transform.
+pub fn transverse_displacement<T: Real>(
+    out: &mut [T],
+    curl: [&[T]; 3],
+    axis: usize,
+    scale: f64,
+    fft: &mut dyn Fft3<T>,
+    exec: &dyn Exec,
+) -> Result<()> {
+    if axis > 2 {
+        return Err(Error::Range);
+    }
+    if !scale.is_finite() {
+        return Err(Error::NotFinite);
+    }
+    if out.len() != fft.length() {
+        return Err(Error::Length);
+    }
+    let modes = *fft.fourier();
+    let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+    modes.check_length(curl[b])?;
+    map_modes(out, &modes, curl[c], &modes, &InverseGradient::new(b, scale), exec)?;
+    add_modes(out, &modes, curl[b], &modes, &InverseGradient::new(c, -scale), exec)?;
+    fft.inverse(out)
 }
 
 /// A, B, C of one cell.

@@ -3,7 +3,7 @@
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use super::blocks::{NORMAL_MEAN, RAYLEIGH_MEAN};
-use super::realisation::{Amplitude, Nyquist, Phase};
+use super::realisation::{Amplitude, Phase, Realisation};
 use crate::exec::Exec;
 use crate::fft::Fft3;
 use crate::math::sqrt;
@@ -12,15 +12,15 @@ use crate::real::Real;
 use crate::status::{Error, Result};
 use crate::walk;
 
-/// Imposes amplitude, phase and Nyquist choice on unit modes w(k), in place: what [`white_modes`](super::white_modes) does to
+/// Imposes amplitude, phase, Nyquist planes and selection of a realisation on unit modes w(k), in place: what [`white_modes`](super::white_modes) does to
 /// its own numbers.
 ///
 /// Normal keeps w; Fixed makes it w/|w|, a zero mode becoming 1; `FixedToMean` multiplies that by sqrt(pi)/2. Self-conjugate
 /// modes lose their imaginary part; their Fixed value is their sign (+1 for zero), times sqrt(2/pi) for `FixedToMean`.
-/// Inverted negates. DC becomes +0; Nyquist planes become +0 or, `Filled`, are treated like the rest.
+/// Inverted negates. DC and modes outside the selection become +0; Nyquist planes become +0 or, `Filled`, are treated like the rest.
 ///
 /// `modes`: (re, im) in the layout of `brick`, Hermitian; |w| need not be near 1. The modulus is taken in f64, without
-/// overflow or underflow.
+/// overflow or underflow. Seed and scheme of `choice` are not used.
 ///
 /// # Errors
 /// `Brick` if the brick is not in Fourier space, `Length` if `modes` is too short, `NotFinite` if one is NaN or infinite (DC and Nyquist
@@ -28,17 +28,10 @@ use crate::walk;
 ///
 /// # Cost
 /// A read of `modes` to check them, then one read-modify-write.
-pub fn impose<T: Real>(
-    modes: &mut [T],
-    brick: &Brick,
-    amplitude: Amplitude,
-    phase: Phase,
-    nyquist: Nyquist,
-    exec: &dyn Exec,
-) -> Result<()> {
+pub fn impose<T: Real>(modes: &mut [T], brick: &Brick, choice: &Realisation, exec: &dyn Exec) -> Result<()> {
     brick.check_space(Space::Fourier)?;
     check_finite(modes, brick, exec)?;
-    scale_and_impose(modes, brick, 1.0, amplitude, phase, nyquist, exec)
+    scale_and_impose(modes, brick, 1.0, choice, exec)
 }
 
 /// Unit modes from the caller's own white noise: transforms forward, multiplies by n^(-3/2), and imposes the choices as
@@ -57,9 +50,7 @@ pub fn impose<T: Real>(
 pub fn unit_modes_from_field<T: Real>(
     fft: &mut dyn Fft3<T>,
     data: &mut [T],
-    amplitude: Amplitude,
-    phase: Phase,
-    nyquist: Nyquist,
+    choice: &Realisation,
     exec: &dyn Exec,
 ) -> Result<()> {
     let (cells, modes) = (*fft.configuration(), *fft.fourier());
@@ -76,7 +67,7 @@ pub fn unit_modes_from_field<T: Real>(
     fft.forward(data)?;
     check_finite(data, &modes, exec)?;
     let n = modes.n() as f64;
-    scale_and_impose(data, &modes, 1.0 / (n * sqrt(n)), amplitude, phase, nyquist, exec)
+    scale_and_impose(data, &modes, 1.0 / (n * sqrt(n)), choice, exec)
 }
 
 /// `NotFinite` if an element of the brick is NaN or infinite, `Length` if the array is short.
@@ -98,20 +89,18 @@ fn scale_and_impose<T: Real>(
     modes: &mut [T],
     brick: &Brick,
     scale: f64,
-    amplitude: Amplitude,
-    phase: Phase,
-    nyquist: Nyquist,
+    choice: &Realisation,
     exec: &dyn Exec,
 ) -> Result<()> {
-    let half = brick.n() / 2;
+    let n = brick.n();
+    let half = n / 2;
     let own_negative = |index: usize| index == 0 || index == half;
-    let sign = if phase == Phase::Inverted { -1.0 } else { 1.0 };
+    let sign = if choice.phase == Phase::Inverted { -1.0 } else { 1.0 };
     walk::walk::<T, 1, 0>(exec, brick, [modes], [], &|run, [row], []| {
         let [x, y, first] = run.index;
+        let within = choice.modes_along_l(n, Brick::mode(n, x), Brick::mode(n, y));
         for (mode, z) in row.as_chunks_mut::<2>().0.iter_mut().zip(first..) {
-            let dc = (x, y, z) == (0, 0, 0);
-            let on_nyquist = x == half || y == half || z == half;
-            if dc || on_nyquist && nyquist == Nyquist::Zero {
+            if (x, y, z) == (0, 0, 0) || z >= within {
                 *mode = [T::ZERO; 2];
                 continue;
             }
@@ -120,7 +109,7 @@ fn scale_and_impose<T: Real>(
             if real {
                 w[1] = 0.0;
             }
-            let factor = match amplitude {
+            let factor = match choice.amplitude {
                 Amplitude::Normal => scale,
                 Amplitude::Fixed => {
                     w = direction(w);

@@ -5,6 +5,10 @@
 //! simulations share a seed share every mode that both hold (Matched), Fixed modes keep the phases of Normal ones, and Inverted
 //! modes are their exact negatives (Avila & Adame 2022, arXiv:2204.11103, section 2).
 //!
+//! So it is in the native scheme. Those of N-GenIC and FastPM, in which existing suites were drawn, take their uniforms from streams
+//! along l whose seeds come from a table ([`Scheme`]); all that follows the uniforms is the same, so that those suites can be
+//! fixed, paired and matched, too.
+//!
 //! Invariants of every output: w(-k) = conj w(k), bit for bit; self-conjugate modes are real; DC is +0.
 
 mod blocks;
@@ -25,3 +29,5 @@ pub use white::{white_modes, white_modes_coloured};
 mod statistics;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_ngenic;

@@ -35,7 +35,7 @@ pub(super) fn draw<T: Real>(
     slots.leave(out, brick, realisation.seed);
     // Columns that are drawn together lie near each other.
     let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
-    let inner = usize::from(stride[1] <= stride[0] || count[0] == 1);
+    let inner = usize::from(count[0] == 1 || count[1] > 1 && stride[1] <= stride[0]);
     let groups = count[inner].div_ceil(LANES);
     let columns = Columns {
         n: brick.n(),

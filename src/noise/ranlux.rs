@@ -171,3 +171,34 @@ impl Ranlxd1 {
         }
     }
 }
+
+#[cfg(test)]
+impl<const L: usize> Lanes<L> {
+    /// Generators side by side.
+    pub(super) fn side_by_side(lanes: [Lanes<1>; L]) -> Self {
+        Self {
+            words: core::array::from_fn(|k| core::array::from_fn(|lane| lanes[lane].words[k][0])),
+            borrow: core::array::from_fn(|lane| lanes[lane].borrow[0]),
+        }
+    }
+}
+
+#[cfg(test)]
+impl Lanes<1> {
+    /// The generator whose next dozen is this: all updates undone. A word is larger than its minuend where its update borrowed.
+    pub(super) fn before(dozen: [u64; WORDS]) -> Self {
+        let mut words = dozen;
+        words.rotate_right(UPDATES % WORDS);
+        let borrowed = |words: &[u64; WORDS], r: usize| u64::from(words[r] > words[(r + LAG) % WORDS]);
+        let mut borrow = 0;
+        for update in (0..UPDATES).rev() {
+            let r = update % WORDS;
+            borrow = borrowed(&words, (r + WORDS - 1) % WORDS);
+            words[r] = words[(r + LAG) % WORDS].wrapping_sub(words[r]).wrapping_sub(borrow) & MASK;
+        }
+        let mut state = Self { words: words.map(|word| [word]), borrow: [borrow] };
+        let before = state;
+        assert_eq!(*state.dozen(), dozen.map(|word| [word]), "undone");
+        before
+    }
+}

@@ -30,18 +30,18 @@ fn choices(seed: u64) -> Vec<Realisation> {
     all
 }
 
-fn whole(n: usize) -> Brick {
+pub(super) fn whole(n: usize) -> Brick {
     Brick::whole(n, Space::Fourier).unwrap()
 }
 
-fn white<T: Real>(brick: &Brick, realisation: &Realisation) -> Vec<T> {
+pub(super) fn white<T: Real>(brick: &Brick, realisation: &Realisation) -> Vec<T> {
     let mut out = vec![T::from_f64(7.0); brick.reals()];
     white_modes(&mut out, brick, realisation, &Serial).unwrap();
     out
 }
 
 /// Indices of all modes of a brick, with the address of their real part.
-fn modes(brick: &Brick) -> impl Iterator<Item = ([usize; 3], usize)> {
+pub(super) fn modes(brick: &Brick) -> impl Iterator<Item = ([usize; 3], usize)> {
     let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
     (0..brick.elements()).map(move |e| {
         let local = [e / (count[1] * count[2]), e / count[2] % count[1], e % count[2]];
@@ -50,15 +50,15 @@ fn modes(brick: &Brick) -> impl Iterator<Item = ([usize; 3], usize)> {
     })
 }
 
-fn signed(n: usize, index: [usize; 3]) -> [i64; 3] {
+pub(super) fn signed(n: usize, index: [usize; 3]) -> [i64; 3] {
     [Brick::mode(n, index[0]), Brick::mode(n, index[1]), index[2] as i64]
 }
 
-fn bits<T: Real>(x: T) -> u64 {
+pub(super) fn bits<T: Real>(x: T) -> u64 {
     x.to_f64().to_bits()
 }
 
-fn same_bits<T: Real>(a: &[T], b: &[T]) -> bool {
+pub(super) fn same_bits<T: Real>(a: &[T], b: &[T]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(&a, &b)| bits(a) == bits(b))
 }
 
@@ -307,19 +307,14 @@ fn bad_arguments_are_refused_and_outputs_untouched() {
         *table.last_mut().unwrap() = bad;
         assert_eq!(coloured(&brick, short + 1, &table), Err(Error::NotFinite), "{bad}");
     }
-    assert_eq!(
-        impose(&mut out, &cells, Amplitude::Fixed, Phase::Original, Nyquist::Zero, &Serial),
-        Err(Error::Brick)
-    );
-    let short_impose =
-        impose(&mut out[..short], &brick, Amplitude::Fixed, Phase::Original, Nyquist::Zero, &Serial);
-    assert_eq!(short_impose, Err(Error::Length));
+    let fixed = Realisation { amplitude: Amplitude::Fixed, ..choice };
+    assert_eq!(impose(&mut out, &cells, &fixed, &Serial), Err(Error::Brick));
+    assert_eq!(impose(&mut out[..short], &brick, &fixed, &Serial), Err(Error::Length));
     assert!(out.iter().all(|&x| x == 7.0));
     for bad in [f32::NAN, f32::INFINITY] {
         let last = out.len() - 1;
         out[last] = bad;
-        let result = impose(&mut out, &brick, Amplitude::Fixed, Phase::Original, Nyquist::Zero, &Serial);
-        assert_eq!(result, Err(Error::NotFinite));
+        assert_eq!(impose(&mut out, &brick, &fixed, &Serial), Err(Error::NotFinite));
         assert!(out[..last].iter().all(|&x| x == 7.0));
     }
 }
@@ -331,7 +326,7 @@ fn imposing_on_normal_modes_gives_the_modes_drawn_that_way() {
     for choice in choices(31) {
         let expected = white::<f64>(&whole(n), &choice);
         let mut imposed = normal.clone();
-        impose(&mut imposed, &whole(n), choice.amplitude, choice.phase, choice.nyquist, &Serial).unwrap();
+        impose(&mut imposed, &whole(n), &choice, &Serial).unwrap();
         if choice.amplitude == Amplitude::Normal {
             assert!(same_bits(&imposed, &expected));
         }
@@ -348,7 +343,9 @@ fn imposing_is_defined_for_every_finite_mode() {
     let brick = whole(n);
     for value in [0.0, -0.0, f64::MIN_POSITIVE * f64::EPSILON, 1e-200, 1e200, f64::MAX] {
         let mut out = vec![value; brick.reals()];
-        impose(&mut out, &brick, Amplitude::Fixed, Phase::Original, Nyquist::Filled, &Serial).unwrap();
+        let fixed =
+            Realisation { amplitude: Amplitude::Fixed, nyquist: Nyquist::Filled, ..Realisation::new(0) };
+        impose(&mut out, &brick, &fixed, &Serial).unwrap();
         for (index, at) in modes(&brick).skip(1) {
             let self_conjugate = index.iter().all(|m| m % (n / 2) == 0);
             let expected = if self_conjugate || value == 0.0 { [1.0, 0.0] } else { [0.5_f64.sqrt(); 2] };
@@ -414,7 +411,8 @@ fn unit_modes_of_a_field_have_its_phases_and_unit_power() {
     fft.forward(&mut transform).unwrap();
     let unit = |fft: &mut Direct, amplitude, phase, nyquist| {
         let mut data = field.clone();
-        unit_modes_from_field(fft, &mut data, amplitude, phase, nyquist, &Serial).unwrap();
+        let choice = Realisation { amplitude, phase, nyquist, ..Realisation::new(0) };
+        unit_modes_from_field(fft, &mut data, &choice, &Serial).unwrap();
         data
     };
     let normal = unit(&mut fft, Amplitude::Normal, Phase::Original, Nyquist::Filled);
@@ -449,7 +447,8 @@ fn a_bad_field_is_refused_before_it_is_transformed() {
     let mut data = vec![1.0; fft.length()];
     let length = data.len();
     let call = |fft: &mut Direct, data: &mut [f64]| {
-        unit_modes_from_field(fft, data, Amplitude::Fixed, Phase::Original, Nyquist::Zero, &Serial)
+        let fixed = Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(0) };
+        unit_modes_from_field(fft, data, &fixed, &Serial)
     };
     assert_eq!(call(&mut fft, &mut data[..length - 1]), Err(Error::Length));
     data[3] = f64::NAN;

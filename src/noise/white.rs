@@ -27,19 +27,34 @@ const SHORT: usize = 4;
 /// or, where j is its own negative, that with i > 0; the other is its conjugate. Here 0 and n/2 are their own negatives, and
 /// n/2 enters the counter as +n/2. DC is +0, and so are the Nyquist planes unless `Filled`.
 ///
+/// In the scheme `NGenIc` u1 and u2, of 48 bits, come from the stream of their (i, j): ranlxd1 under the seed that [`ngenic_seeds`](super::ngenic_seeds)
+/// gives, two numbers for each l from 0 upwards, the second again while it is zero. (i, j, 0) with i > n/2, or i = 0 and j > n/2, is the
+/// conjugate of (-i, -j, 0). `FastPm` draws l = n/2 and, `Filled`, the other Nyquist modes, too: it takes conjugates on l = 0 and l = n/2
+/// where -i < i as an index, or i is its own negative and -j < j; and its Normal self-conjugate modes are sqrt(-ln u2) cos(2 pi u1), of
+/// half the power. Those programs multiply w by sqrt(P/V) as delta_k of exp(+i k.x), as here: no sign differs.
+///
+/// Modes outside the realisation's [`Selection`](super::Selection) are +0. 2LPTic compares floating-point numbers with floor(Nsample/2), so
+/// that modes on the very boundary may be cut there and are drawn here.
+///
 /// `out`: modes as (re, im) in the layout of `brick`; what lies between rows is left alone. f32 modes are the rounded
 /// f64 modes. Each mode depends on the realisation and its number alone, in every bit.
 ///
 /// # Errors
-/// `Brick` if the brick is not in Fourier space, `Length` if `out` is too short: `out` is then untouched. `Hook` if `exec` failed.
+/// `Brick` if the brick is not in Fourier space, `Length` if `out` is too short, `Choice` for `Filled` with `NGenIc`, which has no such
+/// modes: `out` is then untouched. `Hook` if `exec` failed.
 ///
 /// # Cost
-/// About 10 ns a mode on one AVX2 core where l is contiguous; ten times that in layouts that put l elsewhere, whose modes are
+/// Native: about 10 ns a mode on one AVX2 core where l is contiguous; ten times that in layouts that put l elsewhere, whose modes are
 /// drawn one by one. One write of `out`, no scratch.
+///
+/// `NGenIc`, `FastPm`: about 17 ns for each mode from l = 0 to the last that is drawn, in any layout, so that a brick which cuts l draws what
+/// it does not hold; `FastPm` `Filled` half as much again. Before that one thread draws the whole table of seeds, about 20 ns for each of n^2
+/// entries, whatever the brick. No scratch: a column's seeds lie in its first two modes until the modes take their place.
 ///
 /// # Sources
 /// Salmon et al. 2011 (Philox); Box & Muller 1958; Angulo & Pontzen 2016 (arXiv:1603.05253); Eq. rayleigh and Eq. dirac of
-/// arXiv:2204.11103.
+/// arXiv:2204.11103. Luescher 1994 (hep-lat/9309020) for ranlxd1; Springel et al. 2005 (N-GenIC), Crocce, Pueblas & Scoccimarro
+/// 2006 (2LPTic), Feng et al. 2016 (FastPM) for the schemes.
 pub fn white_modes<T: Real>(
     out: &mut [T],
     brick: &Brick,

@@ -11,6 +11,7 @@ pub(crate) mod kick;
 pub(crate) mod ngenic;
 pub(crate) mod parts;
 pub(crate) mod power;
+pub(crate) mod shape;
 pub(crate) mod transform;
 pub(crate) mod variance;
 pub(crate) mod white;

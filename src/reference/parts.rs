@@ -43,41 +43,46 @@ impl<'a, T: Real> Part<'a, T> {
         Self { meeting, cells, modes, fft: first.then(|| serial(cells.n())) }
     }
 
-    fn copy(brick: &Brick, local: &mut [T], whole: &mut [T], to_whole: bool) {
-        let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
-        let (n, width) = (brick.n(), brick.space().width());
-        let row = (n + 2) / width;
-        for i in 0..brick.elements() {
-            let [x, y, z] = [i / (count[1] * count[2]), i / count[2] % count[1], i % count[2]];
-            let here = width * (x * stride[0] + y * stride[1] + z * stride[2]);
-            let there = width * (((start[0] + x) * n + start[1] + y) * row + start[2] + z);
-            for part in 0..width {
-                if to_whole {
-                    whole[there + part] = local[here + part];
-                } else {
-                    local[here + part] = whole[there + part];
-                }
-            }
-        }
-    }
-
     fn together(&mut self, data: &mut [T], to: Space) -> Result<()> {
         let (from, to_brick) = match to {
             Space::Fourier => (self.cells, self.modes),
             Space::Configuration => (self.modes, self.cells),
         };
         let Meeting { whole, all, .. } = self.meeting;
-        Self::copy(&from, data, &mut whole.lock().unwrap(), true);
+        gather(&from, data, &mut whole.lock().unwrap());
         all.wait();
         if let Some(fft) = &mut self.fft {
             let mut whole = whole.lock().unwrap();
             if to == Space::Fourier { fft.forward(&mut whole)? } else { fft.inverse(&mut whole)? }
         }
         all.wait();
-        Self::copy(&to_brick, data, &mut whole.lock().unwrap(), false);
+        scatter(&to_brick, data, &whole.lock().unwrap());
         all.wait();
         Ok(())
     }
+}
+
+/// Where each element of a brick lies in its array and in the whole mesh, in reals.
+fn places(brick: &Brick) -> impl Iterator<Item = (usize, usize)> {
+    let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
+    let (n, width) = (brick.n(), brick.space().width());
+    let row = (n + 2) / width;
+    (0..brick.elements()).flat_map(move |i| {
+        let [x, y, z] = [i / (count[1] * count[2]), i / count[2] % count[1], i % count[2]];
+        let here = width * (x * stride[0] + y * stride[1] + z * stride[2]);
+        let there = width * (((start[0] + x) * n + start[1] + y) * row + start[2] + z);
+        (0..width).map(move |part| (here + part, there + part))
+    })
+}
+
+/// Copies a part to the whole mesh, n x n x (n + 2) reals.
+pub(crate) fn gather<T: Real>(brick: &Brick, part: &[T], whole: &mut [T]) {
+    places(brick).for_each(|(here, there)| whole[there] = part[here]);
+}
+
+/// Copies a part from the whole mesh.
+pub(crate) fn scatter<T: Real>(brick: &Brick, part: &mut [T], whole: &[T]) {
+    places(brick).for_each(|(here, there)| part[here] = whole[there]);
 }
 
 impl<T: Real> Fft3<T> for Part<'_, T> {
