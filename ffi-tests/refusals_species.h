@@ -17,8 +17,11 @@ static void lay_columns(fixpair_species *species) {
 /* `box` is what the function takes as L, `out` is some output. */
 static void refuse_species(fixpair_species *species, double *box, void *out) {
     const double **columns[COLUMNS];
-    double *k = (double *)(uintptr_t)species->k, *last = (double *)(uintptr_t)species->reference + ROWS - 1;
+    double *k, *last;
     int i;
+    restore();
+    k = (double *)(uintptr_t)species->k;
+    last = (double *)(uintptr_t)species->reference + ROWS - 1;
     columns[0] = &species->k;
     columns[1] = &species->matter;
     columns[2] = &species->density;
@@ -27,7 +30,9 @@ static void refuse_species(fixpair_species *species, double *box, void *out) {
     REFUSED(FIXPAIR_ERROR_VERSION, species->struct_size = 0);
     REFUSED(FIXPAIR_ERROR_VERSION, species->struct_size++);
     for (i = 0; i < COLUMNS; i++) {
-        double *column = (double *)(uintptr_t)*columns[i];
+        double *column;
+        restore();
+        column = (double *)(uintptr_t)*columns[i];
         if (i < 4) {
             REFUSED(FIXPAIR_ERROR_NULL, *columns[i] = NULL);
         } else {
@@ -51,8 +56,10 @@ static void refuse_species(fixpair_species *species, double *box, void *out) {
 
 /* `conditions` has the kernel as its rows, in the arena; the power of |n| that a row asks for depends on n_s too. */
 static void refuse_rows(fixpair_conditions *conditions) {
-    double *numbers = (double *)(uintptr_t)&conditions->rows[1].coefficient;
+    double *numbers;
     int i;
+    restore();
+    numbers = (double *)(uintptr_t)&conditions->rows[1].coefficient;
     for (i = 0; i < 4; i++) {
         REFUSED(FIXPAIR_ERROR_NOT_FINITE, numbers[i] = (double)NAN);
         REFUSED(FIXPAIR_ERROR_NOT_FINITE, numbers[i] = (double)INFINITY);
@@ -70,7 +77,9 @@ static void refuse_rows(fixpair_conditions *conditions) {
 
 /* What the scratch query reads of rows. */
 static void refuse_lists_of_rows(fixpair_conditions *conditions, void *out) {
-    const char *rows = (const char *)conditions->rows;
+    const char *rows;
+    restore();
+    rows = (const char *)conditions->rows;
     REFUSED(FIXPAIR_ERROR_NULL, conditions->rows = NULL);
     REFUSED(FIXPAIR_ERROR_ALIGNMENT, conditions->rows = (const fixpair_shape_row *)(const void *)(rows + 4));
     REFUSED(FIXPAIR_ERROR_OVERLAP, conditions->rows = (const fixpair_shape_row *)out);
