@@ -51,8 +51,10 @@ static void refuse_species(fixpair_species *species, double *box, void *out) {
 
 /* `conditions` has the kernel as its rows, in the arena; the power of |n| that a row asks for depends on n_s too. */
 static void refuse_rows(fixpair_conditions *conditions) {
-    double *numbers = (double *)(uintptr_t)&conditions->rows[1].coefficient;
+    double *numbers;
     int i;
+    restore();
+    numbers = (double *)(uintptr_t)&conditions->rows[1].coefficient;
     for (i = 0; i < 4; i++) {
         REFUSED(FIXPAIR_ERROR_NOT_FINITE, numbers[i] = (double)NAN);
         REFUSED(FIXPAIR_ERROR_NOT_FINITE, numbers[i] = (double)INFINITY);
