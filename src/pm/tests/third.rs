@@ -19,7 +19,7 @@ use crate::reference::convolution::Dense;
 const N: usize = 24;
 const BOX: f64 = 240.0;
 
-/// Modes up to 2 on each axis with an r.m.s. of 1, of a jumble's phases.
+/// Modes up to 1 on each axis with an r.m.s. of 1, of a jumble's phases.
 fn field() -> Vec<f64> {
     let mut state = 41_u64;
     let mut uniform = || {
@@ -27,9 +27,9 @@ fn field() -> Vec<f64> {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
     };
-    let jumble: Vec<[f64; 2]> = (0..125).map(|_| [uniform(), uniform()]).collect();
-    let place = |[i, j, l]: [i64; 3]| (((i + 2) * 5 + j + 2) * 5 + l + 2) as usize;
-    let dense = Dense::from_modes(2, |mode| {
+    let jumble: Vec<[f64; 2]> = (0..27).map(|_| [uniform(), uniform()]).collect();
+    let place = |[i, j, l]: [i64; 3]| (((i + 1) * 3 + j + 1) * 3 + l + 1) as usize;
+    let dense = Dense::from_modes(1, |mode| {
         let (a, b) = (jumble[place(mode)], jumble[place(mode.map(|m| -m))]);
         if mode == [0; 3] { [0.0; 2] } else { [a[0] + b[0], a[1] - b[1]] }
     });
