@@ -112,8 +112,17 @@ fn residuals_against_a_run_grow_by_one_order_more_than_the_displacements() {
         let ((d0, early), (d1, late)) = (residuals[from], residuals[from + 1]);
         (late[order] / early[order]).ln() / (d1 / d0).ln()
     };
-    std::println!("{residuals:?}");
-    for order in 0..3 {
-        std::println!("{} {} {}", order + 1, slope(order, 0), slope(order, 1));
+    for from in 0..2 {
+        // The second order is up to a tenth of the first.
+        assert!((slope(0, from) - 2.0).abs() < 0.06, "{}", slope(0, from));
     }
+    // What remains is the run's own error: images of the lattice move particles by a part of the displacement squared that falls with the
+    // mesh, here 2% of Psi2. So the third order shows only in the size of what it leaves.
+    assert!((slope(1, 1) - 3.0).abs() < 0.1, "{}", slope(1, 1));
+    assert!((2.7..3.1).contains(&slope(1, 0)), "{}", slope(1, 0));
+    for (_, [first, second, third]) in &residuals {
+        assert!(second < first && third < second, "{residuals:?}");
+    }
+    let [first, second, third] = residuals[2].1;
+    assert!(second < 0.15 * first && third < 0.3 * second, "{first} {second} {third}");
 }
