@@ -10,8 +10,8 @@ import sys
 import ctypes_estimate
 import ctypes_gravity
 import ctypes_halos
-import ctypes_shape
 import ctypes_initial
+import ctypes_shape
 import ctypes_variance
 import fixpair_ctypes as fixpair
 from ctypes_check import (BOX, FINE, FINER, N, PADDING, ROWS, SEED, Buffer, array, check, claims, doubles, elements,

@@ -211,7 +211,7 @@
 /* The folded (enfolded) template. */
 #define FIXPAIR_SHAPE_FOLDED 4
 
-/* The caller's own kernel, in fixpair_conditions. */
+/* The caller's own kernel, in the rows of fixpair_conditions: see fixpair_shape_row. */
 #define FIXPAIR_SHAPE_ROWS 5
 
 /* Nearest grid point: p = 1. */

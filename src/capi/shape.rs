@@ -23,7 +23,7 @@ pub const FIXPAIR_SHAPE_ORTHOGONAL: i32 = 2;
 pub const FIXPAIR_SHAPE_ORTHOGONAL_LSS: i32 = 3;
 /// The folded (enfolded) template.
 pub const FIXPAIR_SHAPE_FOLDED: i32 = 4;
-/// The caller's own kernel, in fixpair_conditions.
+/// The caller's own kernel, in the rows of fixpair_conditions: see fixpair_shape_row.
 pub const FIXPAIR_SHAPE_ROWS: i32 = 5;
 
 /// Copies the rows of a shape: to see them, to change them, or to add others.
