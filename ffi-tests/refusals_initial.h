@@ -69,7 +69,8 @@ static void X(refuse_places)(X(fixpair_positions) *view, REAL *out) {
     REFUSED(FIXPAIR_ERROR_OVERLAP, (view->x = out, view->y = out + 1, view->z = out + 2));
     SPOILED(FIXPAIR_ERROR_NOT_FINITE, places[4] = (REAL)NAN);
     SPOILED(FIXPAIR_ERROR_NOT_FINITE, places[3 * X(SOME) - 1] = (REAL)INFINITY);
-    ACCEPTED((places[0] = (REAL)-1e30, places[4] = (REAL)1e6));
+    SPOILED(FIXPAIR_ERROR_NOT_FINITE, places[0] = (REAL)-1e30);
+    ACCEPTED((places[0] = (REAL)-1e6, places[4] = (REAL)1e6));
 }
 
 /* Both calls: `at` says whether particles begin at positions of the host's own. */

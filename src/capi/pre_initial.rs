@@ -78,7 +78,7 @@ unsafe fn scratch_at<H: Hook>(
 ///
 /// Out: position     Mpc/h, in [0, L), one for each of pre_initial
 ///      velocity     peculiar, km/s: the same length
-/// In:  pre_initial  q in Mpc/h, any finite numbers, taken periodically; shares no memory with position and velocity
+/// In:  pre_initial  q in Mpc/h, within 1e9 boxes of the box, taken periodically; shares no memory with position and velocity
 ///      conditions, fft, fine, scratch, exec as fixpair_initial_conditions_f64
 /// Returns: as fixpair_initial_conditions_f64, and FIXPAIR_ERROR_BRICK for a mesh that is not whole; after FIXPAIR_ERROR_NOT_FINITE for a
 ///          position of pre_initial outputs are undefined too

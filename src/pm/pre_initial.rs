@@ -38,7 +38,7 @@ pub fn initial_conditions_at_scratch<T: Real>(
 /// Positions and velocities of particles that begin at `pre_initial`: as
 /// [`initial_conditions`](crate::initial::conditions::initial_conditions), but displacements are read out by cloud in cell where each particle is.
 ///
-/// `position`, `velocity`: as many as `pre_initial`, in its order. `pre_initial`: in Mpc/h, any finite numbers, taken periodically. `fft`:
+/// `position`, `velocity`: as many as `pre_initial`, in its order. `pre_initial`: in Mpc/h, within 1e9 boxes of the box, taken periodically. `fft`:
 /// the transform of a whole mesh of any side.
 ///
 /// # Errors
