@@ -105,6 +105,9 @@ static void measure(const fixpair_fft_f32 *fft) {
     places.stride = 3;
     places.length = PARTICLES;
     mesh = room(fft->length * sizeof *mesh);
+    for (i = 0; i < fft->length; i++) {
+        mesh[i] = 0;
+    }
     must(fixpair_deposit_scratch_f32(&layout, &fft->configuration, PARTICLES, FIXPAIR_WINDOW_CIC), 10);
     scratch = piece(layout);
     must(fixpair_deposit_f32(mesh, fft->length, &fft->configuration, &places, NULL, 0, 1000.0, FIXPAIR_WINDOW_CIC, 0.0,
