@@ -1773,10 +1773,10 @@ fixpair_status_t fixpair_initial_conditions_at_scratch_f32(struct fixpair_layout
  *
  * Out: position     Mpc/h, in [0, L), one for each of pre_initial
  *      velocity     peculiar, km/s: the same length
- * In:  pre_initial  q in Mpc/h, taken periodically; shares no memory with position and velocity
+ * In:  pre_initial  q in Mpc/h, within 1e9 boxes of the box, taken periodically; shares no memory with position and velocity
  *      conditions, fft, fine, scratch, exec as fixpair_initial_conditions_f64
  * Returns: as fixpair_initial_conditions_f64, and FIXPAIR_ERROR_BRICK for a mesh that is not whole; after FIXPAIR_ERROR_NOT_FINITE for a
- *          position of pre_initial, or one more than 1e9 boxes away, outputs are undefined too
+ *          position of pre_initial outputs are undefined too
  * Cost: that of fixpair_initial_conditions_f64, and 6 read-outs, 3 at first order
  */
 fixpair_status_t fixpair_initial_conditions_at_f64(const struct fixpair_components_f64 *position,
@@ -2027,7 +2027,7 @@ fixpair_status_t fixpair_add_shape_scratch_f32(struct fixpair_layout *scratch,
  * modes of Phi, after fixing and inverting and before alpha. The mean stays zero, modes with a mode number n/2 receive nothing, and f_nl = 0 or
  * no rows change no bit. See docs/shapes.md for the rows, their bispectra and their signs.
  *
- * In/Out: phi      phi_len reals: Phi_G, then Phi; untouched by every error
+ * In/Out: phi      phi_len reals: Phi_G, then Phi; untouched by every error but FIXPAIR_ERROR_HOOK, after which it is undefined
  * In:     brick    of Fourier space, side n
  *         f_nl
  *         n_s      tilt: P_Phi is proportional to k^(n_s - 4)

@@ -37,10 +37,6 @@ uint64_t budget_ghosts(const struct ghosts *ghosts) {
     return (fold + 3 * fill) * ghosts->plane * sizeof(double);
 }
 
-uint64_t budget_meshes(const struct ghosts *ghosts) {
-    return 3 * sizeof(double) * ghosts->region.count[0] * ghosts->plane;
-}
-
 double budget_moved(const struct slabs *slabs, double box_size, double mean_displacement, double growth) {
     int borders = 0;
     for (int rank = 0; rank < slabs->ranks; rank++) borders += slabs_planes(slabs, rank) > 0;

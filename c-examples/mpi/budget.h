@@ -22,9 +22,6 @@ uint64_t budget_transform(const struct fftw_slabs *fft);
 /* Bytes that this process sends to fold its ghosts once and to fill those of others three times: w d m (m + 2) each. */
 uint64_t budget_ghosts(const struct ghosts *ghosts);
 
-/* Bytes of three meshes with ghosts: 3 w (p + d) m (m + 2). */
-uint64_t budget_meshes(const struct ghosts *ghosts);
-
 /*
  * The share of all particles that cross a border while the growth factor goes from D0 to D1, in linear theory: (R/L) <|psi_x|> (D1 - D0),
  * psi the displacement over D; 0 on one process.

@@ -78,10 +78,10 @@ unsafe fn scratch_at<H: Hook>(
 ///
 /// Out: position     Mpc/h, in [0, L), one for each of pre_initial
 ///      velocity     peculiar, km/s: the same length
-/// In:  pre_initial  q in Mpc/h, taken periodically; shares no memory with position and velocity
+/// In:  pre_initial  q in Mpc/h, within 1e9 boxes of the box, taken periodically; shares no memory with position and velocity
 ///      conditions, fft, fine, scratch, exec as fixpair_initial_conditions_f64
 /// Returns: as fixpair_initial_conditions_f64, and FIXPAIR_ERROR_BRICK for a mesh that is not whole; after FIXPAIR_ERROR_NOT_FINITE for a
-///          position of pre_initial, or one more than 1e9 boxes away, outputs are undefined too
+///          position of pre_initial outputs are undefined too
 /// Cost: that of fixpair_initial_conditions_f64, and 6 read-outs, 3 at first order
 ///
 /// # Safety

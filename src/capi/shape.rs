@@ -107,7 +107,7 @@ unsafe fn shape_scratch<H: Hook>(
 /// modes of Phi, after fixing and inverting and before alpha. The mean stays zero, modes with a mode number n/2 receive nothing, and f_nl = 0 or
 /// no rows change no bit. See docs/shapes.md for the rows, their bispectra and their signs.
 ///
-/// In/Out: phi      phi_len reals: Phi_G, then Phi; untouched by every error
+/// In/Out: phi      phi_len reals: Phi_G, then Phi; untouched by every error but FIXPAIR_ERROR_HOOK, after which it is undefined
 /// In:     brick    of Fourier space, side n
 ///         f_nl
 ///         n_s      tilt: P_Phi is proportional to k^(n_s - 4)

@@ -72,7 +72,7 @@ impl<'a> Species<'a> {
         }
     }
 
-    /// Does the linear spectrum need no correction?
+    /// Is the linear spectrum to be corrected by T_m/reference?
     #[must_use]
     pub fn has_own_growth(&self) -> bool {
         self.reference.is_some()

@@ -14,7 +14,7 @@ use crate::cosmology::power::Linear;
 use crate::cosmology::species::{Ratio, Species, species_table};
 use crate::exec::Exec;
 use crate::fft::Fft3;
-use crate::noise::Realisation;
+use crate::noise::{Nyquist, Realisation};
 use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::status::{Error, Result};
@@ -259,7 +259,8 @@ pub(crate) fn displaced<T: Real>(
         }
     };
     let field = Field {
-        realisation: conditions.realisation,
+        // Displacements have no Nyquist modes, and not every scheme has them.
+        realisation: Realisation { nyquist: Nyquist::Zero, ..conditions.realisation },
         potential_amplitude,
         local: conditions.local,
         shape: conditions.shape,

@@ -8,7 +8,7 @@ use super::modes::{ByTable, Factor, add_modes, map_modes, scale_by_table};
 use super::particles::Step;
 use super::realise::apart;
 use super::shifted::half_cells_length;
-use super::third::{THIRD_ORDER_MESHES, second_order_exact, third_order_sources};
+use super::third::{THIRD_ORDER_MESHES, add_transverse, second_order_exact, third_order_sources};
 use crate::exec::Exec;
 use crate::fft::Fft3;
 use crate::mesh::Brick;
@@ -70,14 +70,14 @@ impl Motion {
         [1.0 - second, second]
     }
 
-    fn check(&self) -> Result<()> {
-        let rates = self.third_rates.iter().flat_map(|&rate| self.shares(rate));
+    fn check(&self, two_fields: bool) -> Result<()> {
         let numbers = [self.box_size, self.velocity, self.second_order];
         if numbers.into_iter().chain(self.third_order).any(|x| !x.is_finite()) {
             return Err(Error::NotFinite);
         }
-        let own_rates = rates.into_iter().all(f64::is_finite);
-        if own_rates && self.second_order != 0.0 { Ok(()) } else { Err(Error::Range) }
+        let mut shares = self.third_rates.iter().flat_map(|&rate| self.shares(rate));
+        let told_apart = shares.all(f64::is_finite) && self.second_order != 0.0;
+        if told_apart || !two_fields { Ok(()) } else { Err(Error::Range) }
     }
 }
 
@@ -149,7 +149,7 @@ pub type Place<'a, T> = dyn FnMut(usize, &[T], Option<&[T]>) -> Result<()> + 'a;
 /// side 3N/2 or more for products of the second order without aliasing; not used at third order, whose products never alias.
 ///
 /// # Errors
-/// `Length` for short arrays, `NotFinite` and `Range` for a motion without sense, or what `fft`, `exec` and `place` return. Where `place`
+/// `Length` for short arrays, `NotFinite` for the motion, `Range` where its two fields cannot be told apart (f1 = f2, or D2 = 0), or what `fft`, `exec` and `place` return. Where `place`
 /// fails the rest is done all the same, for transforms may be collective.
 ///
 /// Cost: 3 transforms at first order, 6 with a species or of higher order, and for the sources at second order 7, or 8 of `fine`; at third 192.
@@ -164,7 +164,7 @@ pub fn displacements<T: Real>(
     place: &mut Place<'_, T>,
     exec: &dyn Exec,
 ) -> Result<()> {
-    motion.check()?;
+    motion.check(order != Order::First || species.is_some())?;
     let (modes, length) = (*fft.fourier(), fft.length());
     let long = rest_length(order, species.is_some(), fft, fine.as_deref());
     if work.rest.len() < long || work.source.len() < length || density.len() < length {
@@ -348,9 +348,6 @@ impl<T: Real> Fields<'_, T> {
         modes: &Brick,
         exec: &dyn Exec,
     ) -> Result<()> {
-        let Some((curl, scale)) = &self.curl else { return Ok(()) };
-        let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-        add_modes(to, modes, curl[c], modes, &InverseGradient::new(b, scale[field]), exec)?;
-        add_modes(to, modes, curl[b], modes, &InverseGradient::new(c, -scale[field]), exec)
+        self.curl.map_or(Ok(()), |(curl, scale)| add_transverse(to, curl, axis, scale[field], modes, exec))
     }
 }

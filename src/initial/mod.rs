@@ -33,6 +33,8 @@ mod tests_third;
 #[cfg(test)]
 mod tests_third_motion;
 #[cfg(test)]
+mod tests_third_sizes;
+#[cfg(test)]
 mod tests_third_sources;
 #[cfg(test)]
 mod tests_whole;

@@ -83,7 +83,7 @@ pub fn add_quadratic_scratch<T: Real>(brick: &Brick, work: &dyn Fft3<T>) -> Resu
 /// Adds a quadratic term to the modes of a Gaussian potential, in place.
 ///
 /// `phi`: modes Phi_G of the Fourier brick `brick`; on return the modes of Phi. The mean and the Nyquist modes receive nothing, and
-/// f_NL = 0 or no rows change nothing. `phi` is read until the last row and written once: an error leaves it as it was.
+/// f_NL = 0 or no rows change nothing. `phi` is read until the last row and written once: an error leaves it as it was, unless `exec` fails in the last pass.
 ///
 /// `work`: the transform on which products are taken. Its side decides the aliasing: the side of `brick` leaves the
 /// folded modes in; 3N/2 or more is exact; anything in between is refused, because it is neither.

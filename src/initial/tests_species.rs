@@ -18,7 +18,7 @@ const BOX: f64 = 400.0;
 const N: usize = 12;
 const ORDERS: [Order; 3] = [Order::First, Order::Second, Order::Third];
 
-fn conditions(order: Order, species: Option<Species<'_>>) -> InitialConditions<'_> {
+pub(super) fn conditions(order: Order, species: Option<Species<'_>>) -> InitialConditions<'_> {
     let cosmology = Cosmology::goliat();
     let fit = EisensteinHu::new(&cosmology, Wiggles::With).unwrap();
     let linear = Linear::from_eisenstein_hu(fit, cosmology.n_s, 1.0).unwrap();
@@ -37,13 +37,14 @@ fn conditions(order: Order, species: Option<Species<'_>>) -> InitialConditions<'
 }
 
 /// Displacements from the lattice, and velocities.
-fn moved(conditions: &InitialConditions<'_>, exec: &dyn Exec) -> [Vec<f64>; 2] {
-    let mut fft = serial::<f64>(N);
+pub(super) fn moved(conditions: &InitialConditions<'_>, exec: &dyn Exec) -> [Vec<f64>; 2] {
+    // Of 3/2 the side, so that the second order is the third's, without aliasing.
+    let (mut fft, mut fine) = (serial::<f64>(N), serial::<f64>(3 * N / 2));
     let (mut x, mut v) = (vec![0.0; 3 * N * N * N], vec![0.0; 3 * N * N * N]);
-    let scratch = memory(initial_conditions_scratch(conditions.parts(), &fft, None).unwrap());
+    let scratch = memory(initial_conditions_scratch(conditions.parts(), &fft, Some(&fine)).unwrap());
     let position = &mut Components::triples(&mut x).unwrap();
     let velocity = &mut Components::triples(&mut v).unwrap();
-    initial_conditions(position, velocity, conditions, &mut fft, None, scratch, exec).unwrap();
+    initial_conditions(position, velocity, conditions, &mut fft, Some(&mut fine), scratch, exec).unwrap();
     for (i, x) in x.iter_mut().enumerate() {
         let lattice = [i / 3 / (N * N), i / 3 / N % N, i / 3 % N][i % 3] as f64 * BOX / N as f64;
         *x -= lattice;

@@ -287,11 +287,10 @@ fn what_the_equation_of_motion_leaves_of_each_order_is_the_next() {
             (late.1[order][kind] / early.1[order][kind]).ln() / (late.0 / early.0).ln()
         };
         for order in 0..3 {
-            std::println!("order {} {:?} {} {}", order + 1, late.1[order], slope(order, 0), slope(order, 1));
             let expected = (order + 2) as f64;
             assert!((slope(order, 0) - expected).abs() < 0.03, "order {}: {}", order + 1, slope(order, 0));
         }
-        // The first order alone is free of vorticity; the second is not, from the third power of the density on.
+        // The first order by itself is free of vorticity; the second is not, from the third power of the density on.
         assert!(late.1[0][1] < 1e-16);
         assert!((slope(1, 1) - 3.0).abs() < 0.03 && (slope(2, 1) - 4.0).abs() < 0.03);
     }

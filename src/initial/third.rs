@@ -17,7 +17,7 @@
 //! All products are exact, by [`super::shifted`]: S as well, unlike that of [`super::lpt`], whose aliasing the work mesh decides.
 
 use super::lpt::InverseGradient;
-use super::modes::{add_modes, map_modes};
+use super::modes::add_modes;
 use super::shifted::{HalfCells, SHIFTS, gather_shift, half_cells_length, tidal_tensor};
 use crate::exec::Exec;
 use crate::fft::Fft3;
@@ -137,7 +137,7 @@ pub fn third_order_scratch<T: Real>(fft: &dyn Fft3<T>) -> Result<Layout> {
 /// # Errors
 /// `Range` for an axis above 2, `NotFinite` for the scale, `Length`, or what `fft` returns.
 ///
-/// Cost: two passes and one transform.
+/// Cost: three passes and one transform.
 pub fn transverse_displacement<T: Real>(
     out: &mut [T],
     curl: [&[T]; 3],
@@ -156,11 +156,26 @@ pub fn transverse_displacement<T: Real>(
         return Err(Error::Length);
     }
     let modes = *fft.fourier();
-    let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
-    modes.check_length(curl[b])?;
-    map_modes(out, &modes, curl[c], &modes, &InverseGradient::new(b, scale), exec)?;
-    add_modes(out, &modes, curl[b], &modes, &InverseGradient::new(c, -scale), exec)?;
+    for component in curl {
+        modes.check_length(component)?;
+    }
+    out.fill(T::ZERO);
+    add_transverse(out, curl, axis, scale, &modes, exec)?;
     fft.inverse(out)
+}
+
+/// to_k <- to_k + `scale` i (n x C_k)_axis/|n|^2.
+pub(super) fn add_transverse<T: Real>(
+    to: &mut [T],
+    curl: [&[T]; 3],
+    axis: usize,
+    scale: f64,
+    modes: &Brick,
+    exec: &dyn Exec,
+) -> Result<()> {
+    let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+    add_modes(to, modes, curl[c], modes, &InverseGradient::new(b, scale), exec)?;
+    add_modes(to, modes, curl[b], modes, &InverseGradient::new(c, -scale), exec)
 }
 
 /// A, B, C of one cell.

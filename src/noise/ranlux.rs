@@ -131,7 +131,7 @@ pub struct Ranlxd1 {
 
 impl Ranlxd1 {
     /// The stream of a seed. The lower 32 bits count as a signed number of which the magnitude is taken, without its 31st bit;
-    /// 0 stands for 1. So distinct streams have seeds in 1 .. 2^31.
+    /// 0 stands for 1. So distinct streams have seeds in 1 ..= 2^31.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self::resume(Lanes::new([seed]), WORDS)

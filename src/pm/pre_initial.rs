@@ -38,12 +38,12 @@ pub fn initial_conditions_at_scratch<T: Real>(
 /// Positions and velocities of particles that begin at `pre_initial`: as
 /// [`initial_conditions`](crate::initial::conditions::initial_conditions), but displacements are read out by cloud in cell where each particle is.
 ///
-/// `position`, `velocity`: as many as `pre_initial`, in its order. `pre_initial`: in Mpc/h, taken periodically. `fft`:
+/// `position`, `velocity`: as many as `pre_initial`, in its order. `pre_initial`: in Mpc/h, within 1e9 boxes of the box, taken periodically. `fft`:
 /// the transform of a whole mesh of any side.
 ///
 /// # Errors
 /// As `initial_conditions`; `Brick` also for a mesh that is not whole: on slabs a host reads displacements out itself. After
-/// `NotFinite` for a position, or one more than 1e9 boxes away, outputs are undefined.
+/// `NotFinite` for a position outputs are undefined.
 ///
 /// The same bits for any number of threads. Cost: that of `initial_conditions`, and three or six read-outs.
 pub fn initial_conditions_at<T: Real>(

@@ -19,7 +19,7 @@ use crate::reference::convolution::Dense;
 const N: usize = 24;
 const BOX: f64 = 240.0;
 
-/// Modes up to 2 on each axis with an r.m.s. of 1, of a jumble's phases.
+/// Modes up to 1 on each axis with an r.m.s. of 1, of a jumble's phases.
 fn field() -> Vec<f64> {
     let mut state = 41_u64;
     let mut uniform = || {
@@ -27,9 +27,9 @@ fn field() -> Vec<f64> {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
     };
-    let jumble: Vec<[f64; 2]> = (0..125).map(|_| [uniform(), uniform()]).collect();
-    let place = |[i, j, l]: [i64; 3]| (((i + 2) * 5 + j + 2) * 5 + l + 2) as usize;
-    let dense = Dense::from_modes(2, |mode| {
+    let jumble: Vec<[f64; 2]> = (0..27).map(|_| [uniform(), uniform()]).collect();
+    let place = |[i, j, l]: [i64; 3]| (((i + 1) * 3 + j + 1) * 3 + l + 1) as usize;
+    let dense = Dense::from_modes(1, |mode| {
         let (a, b) = (jumble[place(mode)], jumble[place(mode.map(|m| -m))]);
         if mode == [0; 3] { [0.0; 2] } else { [a[0] + b[0], a[1] - b[1]] }
     });
@@ -112,8 +112,17 @@ fn residuals_against_a_run_grow_by_one_order_more_than_the_displacements() {
         let ((d0, early), (d1, late)) = (residuals[from], residuals[from + 1]);
         (late[order] / early[order]).ln() / (d1 / d0).ln()
     };
-    std::println!("{residuals:?}");
-    for order in 0..3 {
-        std::println!("{} {} {}", order + 1, slope(order, 0), slope(order, 1));
+    for from in 0..2 {
+        // The second order is up to a tenth of the first.
+        assert!((slope(0, from) - 2.0).abs() < 0.06, "{}", slope(0, from));
     }
+    // What remains is the run's own error: images of the lattice move particles by a part of the displacement squared that falls with the
+    // mesh, here 2% of Psi2. So the third order shows only in the size of what it leaves.
+    assert!((slope(1, 1) - 3.0).abs() < 0.1, "{}", slope(1, 1));
+    assert!((2.7..3.1).contains(&slope(1, 0)), "{}", slope(1, 0));
+    for (_, [first, second, third]) in &residuals {
+        assert!(second < first && third < second, "{residuals:?}");
+    }
+    let [first, second, third] = residuals[2].1;
+    assert!(second < 0.15 * first && third < 0.3 * second, "{first} {second} {third}");
 }
