@@ -292,7 +292,7 @@ static void own(const fixpair_fft_f32 *fft) {
     fixpair_layout layout;
     float *mesh[MESHES];
     void *scratch;
-    size_t i, kept = used;
+    size_t i;
     must(fixpair_species_init(&baryons), 60);
     baryons.rows = 3;
     baryons.k = k;
@@ -342,7 +342,6 @@ static void own(const fixpair_fft_f32 *fft) {
     must(fixpair_third_order_sources_f32(mesh[1], mesh[2], mesh[3], mesh[4], mesh[5], mesh[6], mesh[0], fft->length, fft, scratch,
                                          layout.size, NULL), 69);
     must(fixpair_transverse_displacement_f32(mesh[0], fft->length, mesh[4], mesh[5], mesh[6], fft->length, 0, 1.0, fft, NULL), 70);
-    used = kept;
 }
 
 static void make(void) {
