@@ -231,14 +231,15 @@ fn third_order<T: Real>(
     exec: &dyn Exec,
 ) -> Result<()> {
     let (modes, length, apart) = (*fft.fourier(), fft.length(), apart(fft));
-    let second = &mut work.source[..length];
-    let (sources, meshes) = work.rest.split_at_mut(SOURCES * apart);
+    let Work { source, rest, table } = work;
+    let second = &mut source[..length];
+    let (sources, meshes) = rest.split_at_mut(SOURCES * apart);
     let mut sources = pieces::<T, SOURCES>(sources, length, apart)?;
     let [a, b, c, d, e, f, ..] = pieces::<T, THIRD_ORDER_MESHES>(meshes, length, apart)?;
-    second_order_exact(second, density, fft, [a, b, c, d, e, f], work.table, exec)?;
+    second_order_exact(second, density, fft, [a, b, c, d, e, f], table, exec)?;
     let out = sources.each_mut().map(|mesh| &mut **mesh);
     let twelve = pieces(meshes, length, apart)?;
-    third_order_sources(out, density, second, fft, twelve, work.table, exec)?;
+    third_order_sources(out, density, second, fft, twelve, table, exec)?;
 
     let [det, mixed, curl @ ..] = sources.each_ref().map(|mesh| &**mesh);
     let [d3a, d3b, d3c] = motion.third_order;

@@ -82,15 +82,16 @@ fn add_non_gaussian<T: Real>(
     exec: &dyn Exec,
 ) -> Result<()> {
     let Local { f_nl, g_nl } = field.local;
+    let FieldWork { mesh, rest, table, partial } = work;
     if let Some(coefficient) = ShapeRow::local(field.shape) {
         let local = Local { f_nl: coefficient * f_nl, g_nl };
-        return add_local(phi, brick, local, products, work.mesh, work.partial, exec);
+        return add_local(phi, brick, local, products, mesh, partial, exec);
     }
     let quadratic = Quadratic { f_nl, rows: field.shape, n_s: field.n_s };
-    let (second, sum) = work.rest.split_at_mut_checked(apart(products)).ok_or(Error::Length)?;
-    let meshes = [&mut *work.mesh, second];
-    let scale = quadratic_modes(phi, brick, &quadratic, products, meshes, sum, work.table, exec)?;
-    add_local(phi, brick, Local { f_nl: 0.0, g_nl }, products, work.mesh, work.partial, exec)?;
+    let (second, sum) = rest.split_at_mut_checked(apart(products)).ok_or(Error::Length)?;
+    let meshes = [&mut *mesh, second];
+    let scale = quadratic_modes(phi, brick, &quadratic, products, meshes, sum, table, exec)?;
+    add_local(phi, brick, Local { f_nl: 0.0, g_nl }, products, mesh, partial, exec)?;
     match scale {
         Some(scale) => add_modes(phi, brick, sum, brick, &Scale(scale), exec),
         None => Ok(()),
