@@ -10,7 +10,7 @@
 //! Psi3c_k = (D3c/D^3) i k x C_k/k^2,    C_i = eps_ijk p_lj q_lk
 //! ```
 //!
-//! (repeated indices summed). D3a, D3b, D3c are those of [`crate::cosmology::growth`]; in an Einstein-de Sitter universe their ratios to D^3 are -1/3,
+//! (repeated indices summed). D3a, D3b, D3c are those of [growth](mod@crate::cosmology::growth); in an Einstein-de Sitter universe their ratios to D^3 are -1/3,
 //! 5/21 and 1/7. The third, transverse in Lagrangian space, is what keeps the flow free of vorticity in Eulerian space. A sphere
 //! contracts by R/q = 1 - delta/3 - delta^2/21 - 23 delta^3/1701, as the exact solution expanded.
 //!
