@@ -169,6 +169,11 @@ static int report(struct example *example, const uint64_t sent[TRAFFIC_KINDS]) {
     int far = expected * example->choice.box_size > FAR * example->ranks * example->choice.box_size / (double)example->choice.n;
     CLAIM(example->failures, wrong == 0, "%lu transforms sent %llu bytes from this process, and from each what the formula says",
           4 * (unsigned long)forces, (unsigned long long)transforms);
+    /* What the formula for memory rests on; ghosts that meet round the mesh are no more than its planes. */
+    size_t own = slabs_planes(&pm->fft.slabs, pm->fft.slabs.rank), most_planes = own + (size_t)universe->gravity.window - 1;
+    int short_of = own > 0 && most_planes < pm->fft.slabs.n && pm->ghosts.region.count[0] != most_planes;
+    CLAIM(example->failures, together_count(short_of) == 0, "a slab of %lu planes has the ghosts of its window, %lu planes in all",
+          (unsigned long)own, (unsigned long)pm->ghosts.region.count[0]);
     CLAIM(example->failures, wrong_ghosts == 0, "ghosts of %lu forces %llu bytes", (unsigned long)forces, (unsigned long long)ghosts);
     if (far) {
         CLAIM(example->failures, fabs(share - expected) <= MOVED_BOUND * expected,

@@ -107,7 +107,14 @@ impl<'a> InitialConditions<'a> {
     /// # Errors
     /// As [`InitialConditions::poisson`].
     pub fn motion(&self) -> Result<Motion> {
-        self.motion_of(self.poisson()?.growth())
+        self.start().map(|(_, motion)| motion)
+    }
+
+    /// Both of the above, by one integration of growth.
+    pub(crate) fn start(&self) -> Result<(Poisson<'a>, Motion)> {
+        let poisson = self.poisson()?;
+        let motion = self.motion_of(poisson.growth())?;
+        Ok((poisson, motion))
     }
 
     fn motion_of(&self, growth: Growth) -> Result<Motion> {
@@ -210,24 +217,24 @@ pub fn initial_conditions<T: Real>(
     let cells = *fft.configuration();
     position.check_length(cells.elements())?;
     velocity.check_length(cells.elements())?;
-    let step = conditions.motion()?.step();
+    let start = conditions.start()?;
+    let step = start.1.step();
     let mut place = |axis: usize, first: &[T], second: Option<&[T]>| {
         displace(position, velocity, first, second, &cells, axis, &step, exec)
     };
-    displaced(conditions, fft, fine, scratch, &mut place, exec)
+    displaced(conditions, &start, fft, fine, scratch, &mut place, exec)
 }
 
-/// All but the last stage, which is `place`.
+/// All but the last stage, which is `place`; from what [`InitialConditions::start`] says.
 pub(crate) fn displaced<T: Real>(
     conditions: &InitialConditions<'_>,
+    (poisson, motion): &(Poisson<'_>, Motion),
     fft: &mut dyn Fft3<T>,
     mut fine: Option<&mut (dyn Fft3<T> + '_)>,
     scratch: &mut [u8],
     place: &mut Place<'_, T>,
     exec: &dyn Exec,
 ) -> Result<()> {
-    let poisson = conditions.poisson()?;
-    let motion = conditions.motion_of(poisson.growth())?;
     let (n, box_size) = (fft.configuration().n(), conditions.box_size);
     if let Some(fine) = fine.as_deref() {
         let least = conditions.local.dealiased_side(n).max(3 * n / 2);
@@ -244,8 +251,8 @@ pub(crate) fn displaced<T: Real>(
     let density = arena.take::<T>(sizes.density)?;
     let mesh = arena.take::<T>(sizes.mesh)?;
     let rest = arena.take::<T>(sizes.rest)?;
-    potential_amplitude_table(exec, &poisson, n, box_size, potential_amplitude)?;
-    alpha_table(exec, &poisson, n, box_size, transfer)?;
+    potential_amplitude_table(exec, poisson, n, box_size, potential_amplitude)?;
+    alpha_table(exec, poisson, n, box_size, transfer)?;
     let first_order = match &conditions.species {
         None => None,
         Some(species) => {
@@ -255,7 +262,7 @@ pub(crate) fn displaced<T: Real>(
             }
             species_table(exec, species, Ratio::Density, n, box_size, density_ratio)?;
             species_table(exec, species, Ratio::Velocity, n, box_size, velocity_ratio)?;
-            Some(FirstOrder::new(density_ratio, velocity_ratio, &motion))
+            Some(FirstOrder::new(density_ratio, velocity_ratio, motion))
         }
     };
     let field = Field {
@@ -270,5 +277,5 @@ pub(crate) fn displaced<T: Real>(
     let work = FieldWork { mesh: &mut *mesh, rest: &mut *rest, table: powers, partial };
     linear_density(density, &field, fft, fine.as_deref_mut(), work, exec)?;
     let work = Work { source: mesh, rest, table: half_cells };
-    displacements(density, conditions.order, &motion, first_order.as_ref(), fft, fine, work, place, exec)
+    displacements(density, conditions.order, motion, first_order.as_ref(), fft, fine, work, place, exec)
 }

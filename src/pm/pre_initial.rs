@@ -61,7 +61,8 @@ pub fn initial_conditions_at<T: Real>(
     if position.len() != particles || velocity.len() != particles {
         return Err(Error::Length);
     }
-    let step = conditions.motion()?.step();
+    let start = conditions.start()?;
+    let step = start.1.step();
     let edge = T::from_f64(step.box_size);
     if !(edge > T::ZERO && edge.is_finite()) {
         return Err(Error::Range);
@@ -85,7 +86,7 @@ pub fn initial_conditions_at<T: Real>(
         read(position, first)?;
         second.map_or(Ok(()), |second| read(velocity, second))
     };
-    displaced(conditions, fft, fine, fields, &mut place, exec)?;
+    displaced(conditions, &start, fft, fine, fields, &mut place, exec)?;
     move_from(position, velocity, pre_initial, has_second, &step, exec)
 }
 
