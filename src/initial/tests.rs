@@ -6,10 +6,12 @@ use super::lpt::{displacement, second_order_source, second_order_squares};
 use super::modes::{copy_modes, scale_by_table};
 use super::particles::{Components, Step, displace, particle_ids};
 use super::png::{Local, add_local};
+use super::tests_whole::{conditions, particles};
 use crate::cosmology::mode_table_length;
 use crate::exec::{Serial, Threads};
 use crate::fft::Fft3;
 use crate::mesh::{Brick, Space};
+use crate::noise::{Nyquist, Realisation, Scheme};
 use crate::reference::convolution::Dense;
 use crate::reference::transform::Slow;
 use crate::status::Error;
@@ -353,4 +355,15 @@ fn positions_never_reach_the_far_edge() {
     assert_eq!(displace(x, v, &[f32::NAN; 16], None, &brick, 0, &step, &Serial), Err(Error::NotFinite));
     assert_eq!(displace(x, v, &[0.0; 16], None, &brick, 3, &step, &Serial), Err(Error::Range));
     assert_eq!(displace(x, v, &[0.0; 3], None, &brick, 0, &step, &Serial), Err(Error::Length));
+}
+
+#[test]
+fn the_one_call_has_no_nyquist_modes_whatever_is_asked() {
+    for scheme in [Scheme::Native, Scheme::NGenIc, Scheme::FastPm] {
+        let of = |nyquist| {
+            let realisation = Realisation { scheme, nyquist, ..Realisation::new(3) };
+            particles::<f64>(8, &conditions(realisation, 100.0), &Serial, false)
+        };
+        assert!(of(Nyquist::Zero) == of(Nyquist::Filled), "{scheme:?}");
+    }
 }
