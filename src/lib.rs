@@ -11,6 +11,8 @@ pub mod status;
 
 pub mod scratch;
 
+mod within;
+
 pub mod real;
 
 pub mod math;
