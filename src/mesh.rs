@@ -9,6 +9,7 @@
 //! elements share an address, because the axes nest (sorted by stride, each stride spans the axes before it).
 
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Whether a brick holds real cells or complex modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -74,11 +75,12 @@ impl Brick {
         }
         let mut last = 0_usize; // offset of the last element of the axes seen so far
         for axis in brick.axes_by_stride() {
-            if count[axis] > 1 && !brick.is_empty() {
-                if stride[axis] <= last {
+            let (count, stride) = (count.at(axis), stride.at(axis));
+            if count > 1 && !brick.is_empty() {
+                if stride <= last {
                     return Err(Error::Brick);
                 }
-                let span = stride[axis].checked_mul(count[axis] - 1).ok_or(Error::Overflow)?;
+                let span = stride.checked_mul(count - 1).ok_or(Error::Overflow)?;
                 last = last.checked_add(span).ok_or(Error::Overflow)?;
             }
         }

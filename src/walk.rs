@@ -7,6 +7,7 @@ use crate::exec::{Exec, Shared};
 use crate::mesh::Brick;
 use crate::real::Real;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// A stretch of elements along z.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +23,7 @@ pub struct Run {
 /// Chunks of a brick.
 #[must_use]
 pub fn chunks(brick: &Brick) -> usize {
-    if brick.is_empty() { 0 } else { brick.count()[brick.axes_by_stride()[2]] }
+    if brick.is_empty() { 0 } else { brick.count().at(brick.axes_by_stride()[2]) }
 }
 
 /// Calls `visit` for the runs of one chunk, in order of their address.
@@ -32,13 +33,13 @@ pub fn runs(brick: &Brick, chunk: usize, mut visit: impl FnMut(Run)) {
     let outer = axes[2];
     let joined = outer != 2 && (stride[2] == 1 || count[2] == 1);
     let (middle, inner) = if joined { (1 - outer, 2) } else { (axes[1], axes[0]) };
-    let (steps, length) = if joined { (1, count[2]) } else { (count[inner], 1) };
-    for m in 0..count[middle] {
+    let (steps, length) = if joined { (1, count[2]) } else { (count.at(inner), 1) };
+    for m in 0..count.at(middle) {
         for i in 0..steps {
             let mut local = [0; 3];
-            local[outer] = chunk;
-            local[middle] = m;
-            local[inner] = i;
+            local.put(outer, chunk);
+            local.put(middle, m);
+            local.put(inner, i);
             visit(Run {
                 index: [start[0] + local[0], start[1] + local[1], start[2] + local[2]],
                 offset: (0..3).map(|axis| local[axis] * stride[axis]).sum(),
@@ -95,18 +96,18 @@ pub fn walk_sum<T: Real, const W: usize, const R: usize, const S: usize>(
             // SAFETY: runs of a brick are inside it and disjoint (its axes nest), `check_length` put the brick inside
             // each array, the arrays are distinct exclusive borrows, and each chunk runs once.
             let w = core::array::from_fn(|i| unsafe { meshes[i].part(start, length) });
-            let r = core::array::from_fn(|i| &read[i][start..start + length]);
+            let r = core::array::from_fn(|i| read[i].part(start..start + length));
             body(run, w, r, &mut sum);
         });
         if S > 0 {
             // SAFETY: one entry a chunk, and `partial` has at least as many entries as chunks.
             let entry = unsafe { sums.part(chunk, 1) };
-            entry[0] = sum;
+            entry.fill(sum);
         }
     })?;
     let mut total = [0.0; S];
     if S > 0 {
-        for sum in &partial[..chunks] {
+        for sum in partial.part(..chunks) {
             for (t, s) in total.iter_mut().zip(sum) {
                 *t += s;
             }

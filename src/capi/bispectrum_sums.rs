@@ -241,9 +241,9 @@ unsafe impl<T: Real> Sync for Fields<'_, T> {}
 
 impl<'a, T: Real> Fields<'a, T> {
     fn field(&self, shell: usize) -> &'a [T] {
-        let start = self.starts[shell];
+        let start = self.starts.get(shell).copied().filter(|start| !start.is_null());
         // SAFETY: not null, aligned and apart from what is written (checked at the border); the rest is the caller's promise.
-        if start.is_null() { &[] } else { unsafe { core::slice::from_raw_parts(start, self.length) } }
+        start.map_or(&[], |start| unsafe { core::slice::from_raw_parts(start, self.length) })
     }
 }
 

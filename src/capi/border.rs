@@ -65,7 +65,7 @@ impl Border {
             return Err(Error::Overflow);
         }
         let span = Span { start: pointer.addr(), size, stride: stride.max(1), count, written };
-        if self.spans[..self.used].iter().any(|other| (written || other.written) && span.meets(other)) {
+        if self.spans.iter().take(self.used).any(|other| (written || other.written) && span.meets(other)) {
             return Err(Error::Overlap);
         }
         let place = self.spans.get_mut(self.used).ok_or(Error::Overflow)?;
@@ -109,7 +109,7 @@ impl Border {
     /// As [`Border::read`].
     pub(super) unsafe fn read_one<'a, T>(&mut self, pointer: *const T) -> Result<&'a T> {
         // SAFETY: as the caller promised; one value was asked for.
-        unsafe { self.read(pointer, 1) }.map(|values| &values[0])
+        unsafe { self.read(pointer, 1) }?.first().ok_or(Error::Null)
     }
 
     /// `count` values to write.
@@ -131,7 +131,7 @@ impl Border {
     /// As [`Border::write`].
     pub(super) unsafe fn write_one<'a, T>(&mut self, pointer: *mut T) -> Result<&'a mut T> {
         // SAFETY: as the caller promised; one value was asked for.
-        unsafe { self.write(pointer, 1) }.map(|values| &mut values[0])
+        unsafe { self.write(pointer, 1) }?.first_mut().ok_or(Error::Null)
     }
 
     /// Scratch or tables of `bytes` bytes, which must begin on a cache line.

@@ -1,5 +1,6 @@
 //! Correlation function.
 
+use crate::within::Within;
 use core::ffi::c_void;
 
 use super::binning::{binning, fixpair_binning};
@@ -227,7 +228,7 @@ unsafe fn add<T: Real>(
         let scratch = border.scratch(scratch, scratch_len)?;
         correlation_sums(
             sums,
-            &meshes[..count],
+            meshes.part(..count),
             &brick,
             &binning,
             scratch,

@@ -1,5 +1,6 @@
 //! Fits and posteriors of the bias parameters.
 
+use crate::within::Within;
 use core::ffi::c_void;
 
 use super::border::Border;
@@ -110,7 +111,9 @@ pub unsafe extern "C" fn fixpair_bias_posterior(
             check_parameters(free, parameters)?;
             let all = posterior::bias_posterior(likelihood, start, free, points, probability, scratch)?;
             *fit = all.fit;
-            posteriors.copy_from_slice(&all.posterior[..parameters]);
+            for (posterior, from) in posteriors.iter_mut().zip(all.posterior) {
+                *posterior = from;
+            }
         }
         Ok(())
     })())
@@ -187,8 +190,12 @@ pub unsafe extern "C" fn fixpair_bias_grid(
             let points = border.read(points, parameters)?;
             check_parameters(free, parameters)?;
             let mut grid = Grid { range: [[0.0; 2]; 2], points: [1; 2] };
-            grid.range[..parameters].copy_from_slice(ranges);
-            grid.points[..parameters].copy_from_slice(points);
+            for (place, &range) in grid.range.iter_mut().zip(ranges) {
+                *place = range;
+            }
+            for (place, &points) in grid.points.iter_mut().zip(points) {
+                *place = points;
+            }
             posterior::bias_grid(chi_squared, likelihood, fixed, free, &grid)
         }
     })())
@@ -222,7 +229,7 @@ pub unsafe extern "C" fn fixpair_marginal(
         let len = points_first.checked_mul(points_second).ok_or(Error::Overflow)?;
         // SAFETY: the caller's promise.
         let (density, chi_squared) =
-            unsafe { (border.write(density, points[axis])?, border.read(chi_squared, len)?) };
+            unsafe { (border.write(density, points.at(axis))?, border.read(chi_squared, len)?) };
         posterior::marginal(density, chi_squared, points, axis, [low, high])
     })())
 }

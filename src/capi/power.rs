@@ -1,5 +1,6 @@
 //! Power spectrum.
 
+use crate::within::Within;
 use core::ffi::c_void;
 
 use super::binning::{binning, fixpair_binning};
@@ -227,7 +228,7 @@ unsafe fn add<T: Real>(
         let binning = self::binning(&mut border, binning)?;
         let scratch = border.scratch(scratch, scratch_len)?;
         let exec = HostExec::new(&mut border, exec)?;
-        power_sums(sums, &fields[..count], pairs, &chosen[..count], &brick, &binning, scratch, &exec)
+        power_sums(sums, fields.part(..count), pairs, chosen.part(..count), &brick, &binning, scratch, &exec)
     }
 }
 

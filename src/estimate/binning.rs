@@ -209,7 +209,7 @@ pub fn read_sums(
     if sums.len() != checked.words(spectra)? || bins.len() != count || values.len() != count * each {
         return Err(Error::Length);
     }
-    let (geometry, products) = sums.split_at(count * GEOMETRY);
+    let (geometry, products) = sums.split_at_checked(count * GEOMETRY).ok_or(Error::Length)?;
     let products = ExactSum::of_words(products);
     if products.iter().any(ExactSum::is_lost) {
         return Err(Error::NotFinite);
@@ -223,10 +223,10 @@ pub fn read_sums(
         *bin = Bin { count, first: mean(words[1], words[2]), second: mean(words[3], words[4]) };
     }
     let orders = each / spectra;
-    for (spectrum, values) in values.chunks_exact_mut(count * orders).enumerate() {
-        for (bin, values) in values.chunks_exact_mut(orders).enumerate() {
+    for (spectrum, values) in values.chunks_exact_mut((count * orders).max(1)).enumerate() {
+        for (bin, values) in values.chunks_exact_mut(orders.max(1)).enumerate() {
             for (order, value) in values.iter_mut().enumerate() {
-                *value = products[bin * each + spectrum * orders + order].value();
+                *value = products.get(bin * each + spectrum * orders + order).map_or(0.0, ExactSum::value);
             }
         }
     }

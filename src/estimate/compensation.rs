@@ -20,6 +20,7 @@ use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::status::{Error, Result};
 use crate::walk::walk;
+use crate::within::Within;
 
 /// What the modes of a field are multiplied by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -96,8 +97,8 @@ pub fn compensate<T: Real>(
     let factor = &*factor;
     walk::<T, 1, 0>(exec, brick, [modes], [], &|run, [row], []| {
         let [x, y] = [run.index[0], run.index[1]].map(|i| Brick::mode(n, i).unsigned_abs() as usize);
-        let across = scale * (factor[x] * factor[y]);
-        for (mode, along) in row.as_chunks_mut::<2>().0.iter_mut().zip(&factor[run.index[2]..]) {
+        let across = scale * (factor.at(x) * factor.at(y));
+        for (mode, along) in row.as_chunks_mut::<2>().0.iter_mut().zip(factor.part(run.index[2]..)) {
             *mode = mode.map(|part| T::from_f64(part.to_f64() * (across * along)));
         }
     })

@@ -16,6 +16,7 @@ use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
 use crate::walk::walk;
+use crate::within::Within;
 
 /// Scratch of [`correlation_modes`]: N/2 + 1 numbers.
 ///
@@ -59,7 +60,7 @@ pub fn correlation_modes<T: Real>(
     let scale_of = |index: [usize; 3], m: usize| {
         let [x, y] = [index[0], index[1]].map(|index| Brick::mode(n, index).unsigned_abs() as usize);
         let z = index[2] + m;
-        if x + y + z == 0 { 0.0 } else { scale * (factor[x] * factor[y] * factor[z]) }
+        if x + y + z == 0 { 0.0 } else { scale * (factor.at(x) * factor.at(y) * factor.at(z)) }
     };
     match other {
         None => walk::<T, 1, 0>(exec, brick, [modes], [], &|run, [row], []| {

@@ -4,6 +4,7 @@
 //! of an integer is that integer, so that k = 3 k_f given in h/Mpc is 9 whichever way it was rounded.
 
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Relative distance at which x^2 is taken for an integer: far above the rounding of users' tables, and below 1/|n|^2 for
 /// |n| < 3e4; beyond, edges go to the nearest integer.
@@ -69,7 +70,7 @@ pub fn wavenumber_edges(edges: &mut [u64], wavenumbers: &[f64], box_size: f64) -
     if edges.len() != wavenumbers.len() {
         return Err(Error::Length);
     }
-    fill(edges, |b| edge(wavenumbers[b] * box_size / core::f64::consts::TAU))
+    fill(edges, |b| edge(wavenumbers.at(b) * box_size / core::f64::consts::TAU))
 }
 
 /// Every |n|^2 is its own bin: first, first + 1, first + 2, ... Bins of numbers that are no sum of three squares (7, 15, ...) stay empty.

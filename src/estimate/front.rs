@@ -66,8 +66,8 @@ impl Front {
     pub(super) fn add_slowly(&mut self, term: &[f64; 4], sums: &mut [ExactSum], places: &[Option<usize>; 4]) {
         let largest = term.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
         for (&term, place) in term.iter().zip(places) {
-            if let Some(place) = *place {
-                sums[place].add(term);
+            if let Some(sum) = place.and_then(|place| sums.get_mut(place)) {
+                sum.add(term);
             }
         }
         // Far from where an exact sum ends (2^660, 2^-640) parts and their sums are as good as terms.
@@ -83,8 +83,8 @@ impl Front {
     pub(super) fn flush(&mut self, sums: &mut [ExactSum], places: &[Option<usize>; 4]) {
         for part in &mut self.parts {
             for (value, place) in part.iter_mut().zip(places) {
-                if let Some(place) = *place {
-                    sums[place].add(*value);
+                if let Some(sum) = place.and_then(|place| sums.get_mut(place)) {
+                    sum.add(*value);
                 }
                 *value = 0.0;
             }

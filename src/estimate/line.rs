@@ -8,6 +8,7 @@ use super::binning::{Checked, Second};
 use crate::math;
 use crate::scratch::{Arena, Layout};
 use crate::status::Result;
+use crate::within::Within;
 
 /// What is the same for all rows of a brick.
 pub(super) struct Lines<'a> {
@@ -79,8 +80,9 @@ impl<'a> Line<'a> {
     /// Calls `add(bin, sums)` for each run of row `row` inside a bin.
     #[inline(always)]
     pub(super) fn for_each_run(&self, row: usize, runs: usize, mut add: impl FnMut(usize, &[f64; 4])) {
-        let sums = &self.runs[row * (self.length + 1)..][1..=runs];
-        for (&bin, sums) in self.run_bin[1..=runs].iter().zip(sums) {
+        let first = row * (self.length + 1);
+        let sums = self.runs.part(first + 1..first + runs + 1);
+        for (&bin, sums) in self.run_bin.part(1..runs + 1).iter().zip(sums) {
             if bin > 0 {
                 add(bin as usize - 1, sums);
             }
@@ -90,7 +92,7 @@ impl<'a> Line<'a> {
     /// Where the products of the first `points` points of row `row` go.
     #[inline(always)]
     pub(super) fn products(&mut self, row: usize, points: usize) -> &mut [f64] {
-        &mut self.products[row * self.length..][..points]
+        self.products.part_mut(row * self.length..row * self.length + points)
     }
 
     /// Sums the products of `rows` rows times polynomials in mu^2, lane by lane and run by run.
@@ -106,7 +108,7 @@ impl<'a> Line<'a> {
     /// As [`Line::sum`] for one row, times mu.
     #[inline(always)]
     pub(super) fn sum_odd(&mut self, points: usize, lanes: &[[f64; 4]; 3]) {
-        for (value, mu) in self.products[..points].iter_mut().zip(&self.mu[..points]) {
+        for (value, mu) in self.products.iter_mut().zip(&*self.mu).take(points) {
             *value *= mu;
         }
         self.sum_rows::<1>(points, lanes);
@@ -118,27 +120,29 @@ impl<'a> Line<'a> {
     fn sum_rows<const ROWS: usize>(&mut self, points: usize, [c0, c2, c4]: &[[f64; 4]; 3]) {
         let mut sum = [[0.0_f64; 4]; ROWS];
         let mut run = 0;
-        let (length, keep, mu_square) = (self.length, &self.keep[..points], &self.mu_square[..points]);
-        let products: [&[f64]; ROWS] = core::array::from_fn(|row| &self.products[row * length..][..points]);
+        let length = self.length;
+        let products: [&[f64]; ROWS] =
+            core::array::from_fn(|row| self.products.part(row * length..row * length + points));
         let mut rest = &mut *self.runs;
         let runs: [&mut [[f64; 4]]; ROWS] = core::array::from_fn(|_| {
-            let (first, others) = core::mem::take(&mut rest).split_at_mut(length + 1);
+            let (first, others) =
+                core::mem::take(&mut rest).split_at_mut_checked(length + 1).unwrap_or_default();
             rest = others;
             first
         });
-        for m in 0..points {
-            run += usize::from(keep[m] == 0);
+        for (m, (&keep, &mu_square)) in self.keep.iter().zip(&*self.mu_square).take(points).enumerate() {
+            run += usize::from(keep == 0);
             let mut polynomial = [0.0; 4];
             for lane in 0..4 {
-                polynomial[lane] = c0[lane] + mu_square[m] * (c2[lane] + mu_square[m] * c4[lane]);
+                polynomial[lane] = c0[lane] + mu_square * (c2[lane] + mu_square * c4[lane]);
             }
             for row in 0..ROWS {
-                let product = products[row][m];
+                let product = products[row].at(m);
                 for lane in 0..4 {
-                    let kept = f64::from_bits(sum[row][lane].to_bits() & keep[m]);
+                    let kept = f64::from_bits(sum[row][lane].to_bits() & keep);
                     sum[row][lane] = kept + product * polynomial[lane];
                 }
-                runs[row][run] = sum[row];
+                runs[row].put(run, sum[row]);
             }
         }
     }
@@ -170,11 +174,11 @@ impl Lines<'_> {
         if points == 0 {
             return (0, 0);
         }
-        let z_square = &self.z_square[..points];
+        let z_square = self.z_square.part(..points);
         if self.multipoles() || matches!(self.checked.second, Second::Cosine(_)) {
             self.angles(place, line, points);
         }
-        let bins = &mut line.bin[..points];
+        let bins = line.bin.part_mut(..points);
         let at = |square: u64| self.lookup.get(square as usize).copied().unwrap_or(0);
         match self.checked.second {
             Second::None => {
@@ -184,7 +188,7 @@ impl Lines<'_> {
             }
             Second::Cosine(_) => {
                 let mut range = 0;
-                for ((bin, zz), &mu) in bins.iter_mut().zip(z_square).zip(&line.mu_square[..points]) {
+                for ((bin, zz), &mu) in bins.iter_mut().zip(z_square).zip(&*line.mu_square) {
                     range = self.hunt(range, mu);
                     *bin = self.joined(at(place.square + zz), range);
                 }
@@ -199,12 +203,12 @@ impl Lines<'_> {
                 }
             }
         }
-        let mut last = !bins[0];
+        let mut last = !bins.at(0);
         let mut runs = 0;
         for (&bin, keep) in bins.iter().zip(line.keep.iter_mut()) {
             *keep = u64::from(bin != last).wrapping_sub(1);
             runs += usize::from(bin != last);
-            line.run_bin[runs] = bin;
+            line.run_bin.put(runs, bin);
             last = bin;
         }
         (points, runs)
@@ -214,14 +218,14 @@ impl Lines<'_> {
     pub(super) fn angles(&self, place: Place, line: &mut Line<'_>, points: usize) {
         let along = self.checked.axis[2];
         let square = place.square as f64;
-        for (mu, &z) in line.mu_square[..points].iter_mut().zip(self.z) {
+        for (mu, &z) in line.mu_square.iter_mut().zip(self.z).take(points) {
             let parallel = place.across + along * z;
             // n = 0 has mu = 0; all other squares are 1 or more.
             let square = square + z * z;
             *mu = parallel * parallel / if square < 1.0 { 1.0 } else { square };
         }
         if self.checked.orders & 0b1010 != 0 {
-            for (mus, zs) in line.mu[..points].chunks_mut(4).zip(self.z.chunks(4)) {
+            for (mus, zs) in line.mu.part_mut(..points).chunks_mut(4).zip(self.z.chunks(4)) {
                 let mut length = [1.0; 4];
                 for (length, z) in length.iter_mut().zip(zs) {
                     let square = square + z * z;
@@ -249,7 +253,7 @@ impl Lines<'_> {
         while self.thresholds.get(range).is_some_and(|&next| next <= value) {
             range += 1;
         }
-        while range > 0 && self.thresholds[range - 1] > value {
+        while range > 0 && self.thresholds.at(range - 1) > value {
             range -= 1;
         }
         range
@@ -267,14 +271,15 @@ impl Lines<'_> {
     #[inline(always)]
     pub(super) fn geometry(&self, place: Place, line: &mut Line<'_>, mut add: impl FnMut(usize, [f64; 3])) {
         let (points, runs) = self.bins(place, line);
-        let (length, weight) = (line.length, &self.weight[..points]);
-        let (first, second) = line.products.split_at_mut(length);
-        let (first, second) = (&mut first[..points], &mut second[..points]);
+        let (length, weight) = (line.length, self.weight.part(..points));
+        let (first, second) = line.products.split_at_mut_checked(length).unwrap_or_default();
+        let (first, second) = (first.part_mut(..points), second.part_mut(..points));
         match self.checked.second {
             Second::Parallel(_) => {
-                for m in 0..points {
-                    let (rest, parallel) = self.split(place, self.z_square[m], self.z[m]);
-                    (first[m], second[m]) = (rest, parallel.abs());
+                let points = first.iter_mut().zip(&mut *second).zip(self.z_square).zip(self.z);
+                for (((first, second), &z_square), &z) in points {
+                    let (rest, parallel) = self.split(place, z_square, z);
+                    (*first, *second) = (rest, parallel.abs());
                 }
             }
             Second::None | Second::Cosine(_) => {
@@ -283,7 +288,7 @@ impl Lines<'_> {
                 if matches!(self.checked.second, Second::None) {
                     second.fill(0.0);
                 } else {
-                    second.copy_from_slice(&line.mu_square[..points]);
+                    second.copy(line.mu_square.part(..points));
                     roots(second);
                 }
             }
@@ -295,7 +300,7 @@ impl Lines<'_> {
             run += usize::from(keep == 0);
             let point = [weight, weight * first, weight * second];
             sum = core::array::from_fn(|i| f64::from_bits(sum[i].to_bits() & keep) + point[i]);
-            line.runs[run][..3].copy_from_slice(&sum);
+            line.runs.put(run, [sum[0], sum[1], sum[2], 0.0]);
         }
         line.for_each_run(0, runs, |bin, sums| add(bin, [sums[0], sums[1], sums[2]]));
     }

@@ -22,6 +22,7 @@ use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Scratch of [`power_sums`] for `pairs` pairs of fields. At most 64 sets of partial sums, or 64 MiB of them (two sets if one is more), 4 bytes for
 /// each |n|^2 up to the last edge, 4 for each square of (i, j), and some twenty rows of f64 for each set.
@@ -97,11 +98,11 @@ pub(super) fn power_sums_on<T: Real>(
         pairs.iter().zip(factor.chunks_exact_mut(half)).zip(along.chunks_exact_mut(length.max(1)))
     {
         for (m, factor) in factor.iter_mut().enumerate() {
-            let [f, g] = pair.map(|field| compensation[field].factor(m, brick.n()));
+            let [f, g] = pair.map(|field| compensation.at(field).factor(m, brick.n()));
             *factor = f * g;
         }
         weights(brick, along);
-        for (along, factor) in along.iter_mut().zip(&factor[brick.start()[2]..]) {
+        for (along, factor) in along.iter_mut().zip(factor.part(brick.start()[2]..)) {
             *along *= factor;
         }
     }
@@ -128,16 +129,16 @@ impl<T: Real> Source for Modes<'_, T> {
     #[inline(always)]
     fn row(&self, spectrum: usize, index: [usize; 2], offset: usize, odd: bool, products: &mut [f64]) {
         let n = self.brick.n();
-        let factor = &self.factor[spectrum * (n / 2 + 1)..][..n / 2 + 1];
-        let [x, y] = index.map(|index| factor[Brick::mode(n, index).unsigned_abs() as usize]);
+        let factor = self.factor.part(spectrum * (n / 2 + 1)..);
+        let [x, y] = index.map(|index| factor.at(Brick::mode(n, index).unsigned_abs() as usize));
         let across = x * y;
         let length = self.brick.count()[2];
-        let along = &self.along[spectrum * length..][..products.len()];
-        let [f, g] = self.pairs[spectrum].map(|field| self.fields[field]);
+        let along = self.along.part(spectrum * length..spectrum * length + products.len());
+        let [f, g] = self.pairs.at(spectrum).map(|field| self.fields.at(field));
         let stride = self.brick.stride()[2];
         if stride == 1 {
             let range = 2 * offset..2 * (offset + products.len());
-            let (f, g) = (f[range.clone()].as_chunks::<2>().0, g[range].as_chunks::<2>().0);
+            let (f, g) = (f.part(range.clone()).as_chunks::<2>().0, g.part(range).as_chunks::<2>().0);
             let points = products.iter_mut().zip(f).zip(g).zip(along);
             if odd {
                 points.for_each(|(((product, f), g), along)| {
@@ -147,10 +148,10 @@ impl<T: Real> Source for Modes<'_, T> {
                 points.for_each(|(((product, f), g), along)| *product = real_part(f, g) * (across * along));
             }
         } else {
-            for (m, product) in products.iter_mut().enumerate() {
+            for (m, (product, along)) in products.iter_mut().zip(along).enumerate() {
                 let at = 2 * (offset + m * stride);
-                let (f, g) = (&[f[at], f[at + 1]], &[g[at], g[at + 1]]);
-                *product = if odd { imaginary_part(f, g) } else { real_part(f, g) } * (across * along[m]);
+                let (f, g) = (&[f.at(at), f.at(at + 1)], &[g.at(at), g.at(at + 1)]);
+                *product = if odd { imaginary_part(f, g) } else { real_part(f, g) } * (across * along);
             }
         }
     }
@@ -238,7 +239,7 @@ pub fn subtract_shot_noise(
     for (values, pair) in values.chunks_exact_mut(multipoles * bins.len()).zip(pairs) {
         if pair[0] == pair[1] {
             for (values, bin) in values.chunks_exact_mut(multipoles).zip(bins) {
-                values[0] -= if bin.count > 0 { noise[pair[0]] } else { 0.0 };
+                values[0] -= if bin.count > 0 { noise.at(pair[0]) } else { 0.0 };
             }
         }
     }

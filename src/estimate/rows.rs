@@ -6,6 +6,7 @@ use core::ops::Range;
 
 use super::line::{Place, TOGETHER};
 use crate::mesh::Brick;
+use crate::within::Within;
 
 /// The axis, 0 or 1, whose indices are dealt out to pieces: the outer one in memory.
 pub(super) fn outer_axis(brick: &Brick) -> usize {
@@ -51,7 +52,8 @@ impl Rows<'_> {
         let inner = 1 - outer;
         let row = |o: usize, i: usize| {
             let mut index = [0; 2];
-            (index[outer], index[inner]) = (o, i);
+            index.put(outer, o);
+            index.put(inner, i);
             let [x, y] = index.map(|index| Brick::mode(n, index));
             let place = Place {
                 square: (x * x + y * y) as u64,
@@ -66,7 +68,8 @@ impl Rows<'_> {
         let (low, high) = leader_ranges(self.brick, outer);
         let leaders = low.len() + high.len();
         // The product fits: there are at most 64 pieces.
-        for o in piece * leaders / self.pieces..(piece + 1) * leaders / self.pieces {
+        let cut = |piece: usize| (piece * leaders).checked_div(self.pieces).unwrap_or(0);
+        for o in cut(piece)..cut(piece + 1) {
             let o = if o < low.len() { low.start + o } else { high.start + (o - low.len()) };
             let (inner_low, inner_high) = leader_ranges(self.brick, inner);
             for i in inner_low.chain(inner_high) {
@@ -75,11 +78,11 @@ impl Rows<'_> {
                 let mut count = 0;
                 for &o in os.iter().flatten() {
                     for &i in is.iter().flatten() {
-                        group[count] = row(o, i);
+                        group.put(count, row(o, i));
                         count += 1;
                     }
                 }
-                visit(&group[..count]);
+                visit(group.part(..count));
             }
         }
     }

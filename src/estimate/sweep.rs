@@ -13,6 +13,7 @@ use crate::mesh::{Brick, Space};
 use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// The products p(n) of the points of a row.
 pub(super) trait Source: Sync {
@@ -30,14 +31,14 @@ const PARTIAL: usize = 1 << 26;
 /// Pieces of the work: many enough for many threads, unless their sums take too much memory. Any number gives the same bits.
 fn pieces(brick: &Brick, checked: &Checked<'_>, spectra: usize) -> Result<usize> {
     let bytes = checked.words(spectra)?.checked_mul(8).ok_or(Error::Overflow)?;
-    let most = (PARTIAL / bytes).clamp(2, 64);
+    let most = PARTIAL.checked_div(bytes).unwrap_or(0).clamp(2, 64);
     Ok(if brick.is_empty() { 0 } else { leaders(brick, outer_axis(brick)).min(most) })
 }
 
 /// |n|^2 beyond the mesh's corner need no entry.
 fn lookup_length(brick: &Brick, checked: &Checked<'_>) -> Result<usize> {
     let half = brick.n() as u64 / 2;
-    let last = checked.edges[checked.edges.len() - 1];
+    let last = checked.edges.last().copied().unwrap_or(0);
     usize::try_from(last.min(3 * half * half + 1)).map_err(|_| Error::Overflow)
 }
 
@@ -65,7 +66,7 @@ fn thresholds(checked: &Checked<'_>, out: &mut [f64]) {
         }
     }
     if let (Second::Cosine(edges), Some(last)) = (checked.second, out.last_mut()) {
-        let edge = edges[edges.len() - 1];
+        let edge = edges.at(edges.len() - 1);
         *last = edge * edge * UPPER;
     }
 }
@@ -162,23 +163,24 @@ pub(super) fn sweep<S: Source>(
     let geometry = arena.take::<[i64; GEOMETRY]>(pieces * bins)?;
     let sums = arena.take::<ExactSum>(pieces * bins * each)?;
     let line_bytes = Line::layout(Layout::EMPTY, length)?;
-    let front_count = bins * fronts(checked, spectra)?;
+    let apart = fronts(checked, spectra)?;
+    let front_count = bins * apart;
     let fronts_memory = arena.take::<Front>(pieces * front_count)?;
     let lines_memory = arena.take::<u8>(pieces * line_bytes.size)?;
 
     let mut range = 0;
     for (square, entry) in lookup.iter_mut().enumerate() {
-        while range < checked.edges.len() && checked.edges[range] <= square as u64 {
+        while checked.edges.get(range).is_some_and(|&edge| edge <= square as u64) {
             range += 1;
         }
         // Below the first edge 0; the last edge is beyond the table.
         *entry = range as u32;
     }
     thresholds(checked, thresholds_of);
-    for m in 0..length {
+    for (m, (z, z_square)) in z.iter_mut().zip(&mut *z_square).enumerate() {
         let mode = Brick::mode(brick.n(), brick.start()[2] + m);
-        z[m] = mode as f64;
-        z_square[m] = (mode * mode) as u64;
+        *z = mode as f64;
+        *z_square = (mode * mode) as u64;
     }
     weights(brick, weight);
     let lines = Lines {
@@ -212,7 +214,9 @@ pub(super) fn sweep<S: Source>(
                     #[inline(always)]
                     || {
                         lines.geometry(place, &mut line, |bin, stretch| {
-                            add_geometry(&mut partial[bin], stretch, times);
+                            if let Some(sums) = partial.get_mut(bin) {
+                                add_geometry(sums, stretch, times);
+                            }
                         });
                     },
                 );
@@ -220,7 +224,7 @@ pub(super) fn sweep<S: Source>(
             match &histogram {
                 Some(histogram) => {
                     // Dealt out like cards: large squares have fewer points inside the last edge.
-                    for (square, &times) in histogram.iter().enumerate().skip(piece).step_by(pieces) {
+                    for (square, &times) in histogram.iter().enumerate().skip(piece).step_by(pieces.max(1)) {
                         if times > 0 {
                             add(Place { square: square as u64, across: 0.0 }, i64::from(times));
                         }
@@ -244,7 +248,8 @@ pub(super) fn sweep<S: Source>(
             sums.fill(ExactSum::ZERO);
             fronts.fill(Front::ZERO);
             let Ok(mut line) = line_of(piece) else { return };
-            let mut partial = Partial { sums, fronts, each, groups: &groups, spectra };
+            let multipoles = each.checked_div(spectra).unwrap_or(0);
+            let mut partial = Partial { sums, fronts, apart, each, multipoles, groups: &groups, spectra };
             let mut terms = 0;
             rows.for_each(piece, |group| {
                 // No row adds more than `length` runs to a bin.
@@ -262,16 +267,16 @@ pub(super) fn sweep<S: Source>(
         })?;
     }
 
-    let (counts, products) = words.split_at_mut(bins * GEOMETRY);
+    let (counts, products) = words.split_at_mut_checked(bins * GEOMETRY).ok_or(Error::Length)?;
     let counts = counts.as_chunks_mut::<GEOMETRY>().0;
-    for partial in geometry.chunks_exact(bins) {
+    for partial in geometry.chunks_exact(bins.max(1)) {
         for (words, partial) in counts.iter_mut().zip(partial) {
             words.iter_mut().zip(partial).for_each(|(word, term)| *word = word.wrapping_add(*term));
         }
     }
     counts.iter_mut().for_each(carry_geometry);
     let products = ExactSum::in_words(products);
-    for partial in sums.chunks_exact(bins * each) {
+    for partial in sums.chunks_exact((bins * each).max(1)) {
         products.iter_mut().zip(partial).for_each(|(sum, partial)| sum.merge(partial));
     }
     products.iter_mut().for_each(ExactSum::carry);
@@ -298,8 +303,10 @@ fn groups(checked: &Checked<'_>) -> [Option<Group>; 2] {
 struct Partial<'a> {
     sums: &'a mut [ExactSum],
     fronts: &'a mut [Front],
-    /// Sums of a bin.
+    /// Fronts and sums of a bin, and its sums of one spectrum.
+    apart: usize,
     each: usize,
+    multipoles: usize,
     groups: &'a [Option<Group>; 2],
     spectra: usize,
 }
@@ -316,12 +323,11 @@ impl Partial<'_> {
         front: usize,
         group: &Group,
     ) {
-        let fronts = self.fronts.len() / (self.sums.len() / self.each);
-        let multipoles = self.each / self.spectra;
         line.for_each_run(row, runs, |bin, values| {
-            let front = &mut self.fronts[bin * fronts + front];
+            let Some(front) = self.fronts.get_mut(bin * self.apart + front) else { return };
             if !front.add(values) {
-                let sums = &mut self.sums[bin * self.each + spectrum * multipoles..][..multipoles];
+                let first = bin * self.each + spectrum * self.multipoles;
+                let sums = self.sums.part_mut(first..first + self.multipoles);
                 front.add_slowly(values, sums, &group.places);
             }
         });
@@ -329,13 +335,11 @@ impl Partial<'_> {
 
     /// Moves everything to the exact sums, in their one form.
     fn settle(&mut self) {
-        let bins = self.sums.len() / self.each;
-        let fronts = self.fronts.len() / bins;
-        let multipoles = self.each / self.spectra;
-        for (fronts, sums) in self.fronts.chunks_exact_mut(fronts).zip(self.sums.chunks_exact_mut(self.each))
-        {
+        let bins =
+            self.fronts.chunks_exact_mut(self.apart.max(1)).zip(self.sums.chunks_exact_mut(self.each.max(1)));
+        for (fronts, sums) in bins {
             let mut fronts = fronts.iter_mut();
-            for sums in sums.chunks_exact_mut(multipoles) {
+            for sums in sums.chunks_exact_mut(self.multipoles.max(1)) {
                 for (group, front) in self.groups.iter().flatten().zip(&mut fronts) {
                     front.flush(sums, &group.places);
                 }
@@ -360,11 +364,12 @@ fn sum_rows<S: Source>(
     let (mut points, mut runs) = (0, 0);
     // Rows summed side by side: all of them (1, 2 or 4) where they have the same angles, else one after another.
     let step = if together && same_angles { rows.len() } else { 1 };
-    for (part, rows) in rows.chunks(step).enumerate() {
+    for (part, rows) in rows.chunks(step.max(1)).enumerate() {
+        let Some(first) = rows.first() else { continue };
         if part == 0 || !together {
-            (points, runs) = lines.bins(rows[0].place, line);
+            (points, runs) = lines.bins(first.place, line);
         } else if !same_angles {
-            lines.angles(rows[0].place, line, points);
+            lines.angles(first.place, line, points);
         }
         if points == 0 {
             continue;
@@ -399,7 +404,12 @@ fn sum_rows<S: Source>(
 fn count_rows<'h>(histogram: &'h mut [u32], rows: &Rows<'_>) -> &'h [u32] {
     histogram.fill(0);
     for piece in 0..rows.pieces {
-        rows.for_each(piece, |group| histogram[group[0].place.square as usize] += group.len() as u32);
+        rows.for_each(piece, |group| {
+            let place = group.first().map_or(0, |row| row.place.square as usize);
+            if let Some(times) = histogram.get_mut(place) {
+                *times += group.len() as u32;
+            }
+        });
     }
     histogram
 }

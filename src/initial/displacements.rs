@@ -15,6 +15,7 @@ use crate::mesh::Brick;
 use crate::real::Real;
 use crate::status::{Error, Result};
 use crate::walk::walk;
+use crate::within::Within;
 
 /// Order of the displacements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -198,8 +199,8 @@ pub fn displacements<T: Real>(
 }
 
 fn two_meshes<T>(rest: &mut [T], length: usize, apart: usize) -> [&mut [T]; 2] {
-    let (one, two) = rest.split_at_mut(apart);
-    [&mut one[..length], &mut two[..length]]
+    let (one, two) = rest.split_at_mut_checked(apart).unwrap_or_default();
+    [one.part_mut(..length), two.part_mut(..length)]
 }
 
 /// S, un-normalised, in `source`; returns where its modes lie.
@@ -216,7 +217,7 @@ fn second_order<T: Real>(
         second_order_squares(density, &modes, fine, [source, rest], exec)?;
         return Ok(*fine.fourier());
     }
-    let (a, b) = rest.split_at_mut(apart);
+    let (a, b) = rest.split_at_mut_checked(apart).ok_or(Error::Length)?;
     second_order_products(density, &modes, fft, [source, a, b], exec)?;
     Ok(modes)
 }
@@ -232,8 +233,8 @@ fn third_order<T: Real>(
 ) -> Result<()> {
     let (modes, length, apart) = (*fft.fourier(), fft.length(), apart(fft));
     let Work { source, rest, table } = work;
-    let second = &mut source[..length];
-    let (sources, meshes) = rest.split_at_mut(SOURCES * apart);
+    let second = source.part_mut(..length);
+    let (sources, meshes) = rest.split_at_mut_checked(SOURCES * apart).ok_or(Error::Length)?;
     let mut sources = pieces::<T, SOURCES>(sources, length, apart)?;
     let [a, b, c, d, e, f, ..] = pieces::<T, THIRD_ORDER_MESHES>(meshes, length, apart)?;
     second_order_exact(second, density, fft, [a, b, c, d, e, f], table, exec)?;
@@ -259,7 +260,7 @@ fn third_order<T: Real>(
 
 /// `K` meshes of `length` reals that begin `apart` reals from each other.
 fn pieces<T, const K: usize>(array: &mut [T], length: usize, apart: usize) -> Result<[&mut [T]; K]> {
-    let mut meshes = array.chunks_mut(apart).filter_map(|mesh| mesh.get_mut(..length));
+    let mut meshes = array.chunks_mut(apart.max(1)).filter_map(|mesh| mesh.get_mut(..length));
     let mut short = false;
     let found = core::array::from_fn(|_| {
         meshes.next().unwrap_or_else(|| {

@@ -10,6 +10,7 @@ use crate::real::Real;
 use crate::simd::Simd;
 use crate::status::{Error, Result};
 use crate::walk::walk;
+use crate::within::Within;
 
 /// What a mode is multiplied by: a real function of its mode number, times 1 or i.
 pub(crate) trait Factor: Sync {
@@ -41,7 +42,7 @@ pub fn scale_by_table<T: Real>(modes: &mut [T], brick: &Brick, table: &[f64], ex
         let square = (x * x + y * y) as usize;
         for (m, mode) in row.chunks_exact_mut(2).enumerate() {
             let z = run.index[2] + m;
-            let scale = if m < inside { table[square + z * z] } else { 0.0 };
+            let scale = if m < inside { table.at(square + z * z) } else { 0.0 };
             mode[0] = T::from_f64(mode[0].to_f64() * scale);
             mode[1] = T::from_f64(mode[1].to_f64() * scale);
         }
@@ -102,7 +103,7 @@ fn combine_modes<T: Real, F: Factor, const ADD: bool>(
         let z = run.index[2];
         let inside = inside(z, run.length, [x, y], half);
         if !ADD {
-            row[2 * inside..].fill(T::ZERO);
+            row.part_mut(2 * inside..).fill(T::ZERO);
         }
         if inside == 0 {
             return;
@@ -112,16 +113,16 @@ fn combine_modes<T: Real, F: Factor, const ADD: bool>(
             + (z - start[2]) * stride[2];
         let n = [x as f64, y as f64, z as f64];
         if stride[2] == 1 {
-            let source = &from[2 * offset..2 * (offset + inside)];
+            let source = from.part(2 * offset..2 * (offset + inside));
             simd.vectorise(
                 #[inline(always)]
-                || multiply_row::<T, F, ADD>(&mut row[..2 * inside], source, n, factor),
+                || multiply_row::<T, F, ADD>(row.part_mut(..2 * inside), source, n, factor),
             );
         } else {
-            for m in 0..inside {
+            for (m, mode) in row.chunks_exact_mut(2).enumerate().take(inside) {
                 let at = 2 * (offset + m * stride[2]);
                 let n = [n[0], n[1], n[2] + m as f64];
-                multiply_row::<T, F, ADD>(&mut row[2 * m..2 * m + 2], &from[at..at + 2], n, factor);
+                multiply_row::<T, F, ADD>(mode, from.part(at..at + 2), n, factor);
             }
         }
     })

@@ -13,6 +13,7 @@ use crate::real::Real;
 use crate::simd::Simd;
 use crate::status::{Error, Result};
 use crate::walk::{Run, walk};
+use crate::within::Within;
 
 /// Where three components of each particle lie: component a of particle i at `start[a] + i stride`. That covers triples, three
 /// separate arrays, and a member of the caller's own particle struct.
@@ -97,8 +98,9 @@ impl<'a, T: Real> Components<'a, T> {
     #[inline(always)]
     unsafe fn write(&self, axis: usize, first: usize, values: &[T]) {
         let stride = self.stride;
+        let Some(start) = self.start.get(axis) else { return };
         // SAFETY: the element belongs to this value (constructors).
-        let start = unsafe { self.start[axis].add(first * stride) };
+        let start = unsafe { start.add(first * stride) };
         for (i, &value) in values.iter().enumerate() {
             // SAFETY: as above, and to the calling thread alone (caller).
             unsafe { start.add(i * stride).write(value) }
@@ -210,7 +212,7 @@ impl<T: Real> Moved<'_, T> {
             let first = block * BLOCK;
             load(&mut one, psi1);
             if let Some(psi2) = self.psi2 {
-                load(&mut two, &psi2[first..first + psi1.len()]);
+                load(&mut two, psi2.part(first..first + psi1.len()));
             }
             sound &= self.block(first, &one, &two, &mut place, &mut speed);
             put(first, &place[..psi1.len()], &speed[..psi1.len()]);
@@ -231,7 +233,7 @@ impl<T: Real> Moved<'_, T> {
         let box_size = self.step.box_size;
         let cell = box_size / self.n as f64;
         let along = if self.axis == 2 { 1.0 } else { 0.0 };
-        let q = self.run.index[self.axis] as f64 + along * first as f64;
+        let q = self.run.index.at(self.axis) as f64 + along * first as f64;
         let edge = T::from_f64(box_size);
         let mut x = [0.0; BLOCK];
         let mut outside = 0;
@@ -304,7 +306,8 @@ pub fn particle_ids(ids: &mut [u64], brick: &Brick, first_id: u64, exec: &dyn Ex
     let plane = count[1] * count[2];
     crate::exec::for_each_piece(exec, ids, plane, &|x, piece| {
         for (at, id) in piece.iter_mut().enumerate() {
-            let (y, z) = (start[1] + at / count[2], start[2] + at % count[2]);
+            let row = at.checked_div(count[2]).unwrap_or(0);
+            let (y, z) = (start[1] + row, start[2] + at - row * count[2]);
             *id = (((start[0] + x) as u64 * n) + y as u64) * n + z as u64 + first_id;
         }
     })

@@ -15,6 +15,7 @@ use crate::real::Real;
 use crate::simd::Simd;
 use crate::status::{Error, Result};
 use crate::walk::walk;
+use crate::within::Within;
 
 /// Shifts that make a product exact.
 pub(super) const SHIFTS: usize = 8;
@@ -51,7 +52,7 @@ impl<'a> HalfCells<'a> {
 
     /// exp(i pi m/N) for any signed m.
     fn at(self, m: i64) -> [f64; 2] {
-        let [re, im] = self.0[m.unsigned_abs() as usize];
+        let [re, im] = Within::at(self.0, m.unsigned_abs() as usize);
         [re, if m < 0 { -im } else { im }]
     }
 
@@ -79,7 +80,7 @@ fn phases(row: [f64; 2], along: Option<&[[f64; 2]]>, z: usize, out: &mut [[f64; 
     match along {
         None => out.fill(row),
         Some(table) => {
-            for (phase, &step) in out.iter_mut().zip(&table[z..]) {
+            for (phase, &step) in out.iter_mut().zip(table.part(z..)) {
                 *phase = times(row, step);
             }
         }
@@ -105,13 +106,13 @@ pub(super) fn tidal_tensor<T: Real>(
         let z = run.index[2];
         let inside = inside(z, run.length, xy, n / 2);
         let mut out = out.map(|mesh| {
-            mesh[2 * inside..].fill(T::ZERO);
-            &mut mesh[..2 * inside]
+            mesh.part_mut(2 * inside..).fill(T::ZERO);
+            mesh.part_mut(..2 * inside)
         });
         let (phase, along) = half_cells.row(shift, xy);
         simd.vectorise(
             #[inline(always)]
-            || tidal_row(&mut out, &row[..2 * inside], xy, z, phase, along),
+            || tidal_row(&mut out, row.part(..2 * inside), xy, z, phase, along),
         );
     })
 }
@@ -137,7 +138,7 @@ fn tidal_row<T: Real>(
             *value = times(factors[m], [from[0].to_f64() * inverse, from[1].to_f64() * inverse]);
         }
         for (out, [a, b]) in out.iter_mut().zip(PAIRS) {
-            let to = &mut out[2 * first..2 * first + from.len()];
+            let to = out.part_mut(2 * first..2 * first + from.len());
             for ((m, to), value) in to.chunks_exact_mut(2).enumerate().zip(&values) {
                 let n = [x, y, (z + first + m) as f64];
                 let tensor = n[a] * n[b];
@@ -173,7 +174,7 @@ pub(super) fn gather_shift<T: Real, const K: usize>(
             if shift == 0 {
                 sum.fill(T::ZERO);
             }
-            let (sum, row) = (&mut sum[..2 * inside], &row[..2 * inside]);
+            let (sum, row) = (sum.part_mut(..2 * inside), row.part(..2 * inside));
             simd.vectorise(
                 #[inline(always)]
                 || gather_row(sum, row, z, phase, along),

@@ -26,6 +26,7 @@ use crate::real::Real;
 use crate::scratch::Layout;
 use crate::status::{Error, Result};
 use crate::walk::walk;
+use crate::within::Within;
 
 /// Meshes that [`second_order_exact`] works on.
 pub const SECOND_ORDER_MESHES: usize = 6;
@@ -60,7 +61,7 @@ pub fn second_order_exact<T: Real>(
         let [xx, yy, zz, xy, xz, yz] = meshes.each_mut();
         walk::<T, 1, 5>(exec, &cells, [xx], [yy, zz, xy, xz, yz], &|_, [sum], rows| {
             for (i, s) in sum.iter_mut().enumerate() {
-                let [yy, zz, xy, xz, yz] = rows.map(|row| row[i]);
+                let [yy, zz, xy, xz, yz] = rows.map(|row| row.at(i));
                 *s = *s * (yy + zz) + yy * zz - (xy * xy + xz * xz + yz * yz);
             }
         })?;
@@ -99,14 +100,12 @@ pub fn third_order_sources<T: Real>(
             fft.inverse(mesh)?;
         }
         let [a, b, c, d, e, f, g, h, i, j, k, l] = meshes.each_mut().map(|mesh| &mut **mesh);
-        walk::<T, 5, 7>(exec, &cells, [a, b, c, d, e], [f, g, h, i, j, k, l], &|_, sources, rows| {
+        walk::<T, 5, 7>(exec, &cells, [a, b, c, d, e], [f, g, h, i, j, k, l], &|_, mut sources, rows| {
             for x in 0..rows[0].len() {
-                let p =
-                    [sources[0][x], sources[1][x], sources[2][x], sources[3][x], sources[4][x], rows[0][x]];
-                let q = core::array::from_fn(|m| rows[m + 1][x]);
-                let values = products(p, q);
-                for m in 0..5 {
-                    sources[m][x] = values[m];
+                let [a, b, c, d, e] = sources.each_ref().map(|row| row.at(x));
+                let [f, q @ ..] = rows.map(|row| row.at(x));
+                for (source, value) in sources.iter_mut().zip(products([a, b, c, d, e, f], q)) {
+                    source.put(x, value);
                 }
             }
         })?;

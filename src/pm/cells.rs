@@ -57,7 +57,9 @@ impl Cells {
     /// Offset of cell (i, j, k) after the first that a particle touches, in any layout and round any edge.
     #[inline(always)]
     pub(super) fn offset(&self, first: [usize; 3], cell: [usize; 3]) -> usize {
-        (0..3).map(|axis| (first[axis] + cell[axis]) % self.count[axis] * self.stride[axis]).sum()
+        // No count is 0 where a particle is inside.
+        let index = |axis: usize| (first[axis] + cell[axis]).checked_rem(self.count[axis]).unwrap_or(0);
+        (0..3).map(|axis| index(axis) * self.stride[axis]).sum()
     }
 }
 

@@ -190,7 +190,7 @@ unsafe fn load_all<T: Real, const N: usize>(
         for axis in 0..3 {
             // SAFETY: the particles exist (caller).
             let start = unsafe { start[axis].add(first * stride) };
-            for (i, to) in to[axis][at..at + count].iter_mut().enumerate() {
+            for (i, to) in to[axis].iter_mut().skip(at).take(count).enumerate() {
                 // SAFETY: as above.
                 *to = unsafe { start.add(i * stride).read() };
             }

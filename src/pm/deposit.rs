@@ -22,6 +22,7 @@ use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Scratch of [`deposit`]: with m = min(particles, 2^21), t tiles (at most 4096, a function of region and window) and r = size of `T`,
 /// 4 r m + 2 m + 8 (m/8 + ceil(m/2^15)) + 4 t ceil(m/2^15) + 4 (t + 1) bytes, m/8 rounded down, each term up to 64.
@@ -212,7 +213,7 @@ impl<T: Real> Target<'_, T> {
                 unsafe { positions.load_all(rest.start, count, filled, &mut block.v) };
                 if let Fourth::Weight(weights) = fourth {
                     // SAFETY: as above, and there are as many weights as positions.
-                    unsafe { weights.load(rest.start, count, &mut block.mass[filled..]) };
+                    unsafe { weights.load(rest.start, count, block.mass.part_mut(filled..)) };
                 }
                 rest.start += count;
                 block.count += count;

@@ -28,6 +28,7 @@ use crate::initial::particles::Components;
 use crate::real::Real;
 use crate::scratch::Layout;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// What moves the particles.
 #[derive(Clone, Copy, Debug)]
@@ -131,9 +132,9 @@ pub fn evolve<T: Real>(
     let last = scale_factors.len() - 1;
     let mover = Mover::new(gravity, displacements, [position.len(), velocity.len()], workshop)?;
     let mut queue = Queue::new(outputs, scale_factors, *epoch, position.len(), observe)?;
-    mover.try_steps(&scale_factors[first..], epoch.velocity)?;
+    mover.try_steps(scale_factors.part(first..), epoch.velocity)?;
     for step in first..=last {
-        let a = scale_factors[step];
+        let a = scale_factors.at(step);
         queue.steps = [step, last];
         mover.force(&Positions::from(&*position), workshop)?;
         queue.write_until(a, position, velocity, *epoch, &mover, workshop)?;
@@ -142,7 +143,8 @@ pub fn evolve<T: Real>(
             epoch.velocity = a;
             break;
         }
-        let (middle, next) = (half_step(a, scale_factors[step + 1]), scale_factors[step + 1]);
+        let next = scale_factors.at(step + 1);
+        let middle = half_step(a, next);
         mover.kick(velocity, &Positions::from(&*position), *epoch, middle, workshop)?;
         epoch.velocity = middle;
         queue.write_until(middle, position, velocity, *epoch, &mover, workshop)?;

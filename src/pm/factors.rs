@@ -29,6 +29,7 @@ use super::kick::Kick;
 use crate::cosmology::quadrature::integrate;
 use crate::cosmology::{Cosmology, Growth, growth_many};
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Relative accuracy of the integrals over a.
 const TOLERANCE: f64 = 1e-12;
@@ -136,8 +137,8 @@ impl Stepper {
         let mut growth = [Growth::default(); 3];
         growth_many(cosmology, &a, &mut growth)?;
         Ok([0, 1, 2].map(|i| {
-            let Growth { d, f, d2, f2, .. } = growth[i];
-            let rate = a[i] * a[i] * libm::sqrt(cosmology.e_squared(a[i]));
+            let (Growth { d, f, d2, f2, .. }, a) = (growth.at(i), a.at(i));
+            let rate = a * a * libm::sqrt(cosmology.e_squared(a));
             Epoch { d, d2, velocity: rate * f * d, second_velocity: rate * f2 * d2 }
         }))
     }

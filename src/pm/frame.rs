@@ -76,7 +76,7 @@ impl<T: Real> Frame<T> {
         };
         for axis in 0..3 {
             let room = if count[axis] == n { n } else { (count[axis] + 1).saturating_sub(window.order()) };
-            frame.base[axis] = index((start[axis] + window.before()) % n)?;
+            frame.base[axis] = index((start[axis] + window.before()).checked_rem(n).ok_or(Error::MeshSize)?)?;
             frame.limit[axis] = if region.is_empty() { 0 } else { index(room)? };
         }
         Ok(frame)

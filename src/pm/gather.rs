@@ -12,6 +12,7 @@ use crate::exec::Exec;
 use crate::real::Real;
 use crate::simd::Simd;
 use crate::status::Result;
+use crate::within::Within;
 
 /// Particles from asking for cells to reading them.
 const AHEAD: usize = 8;
@@ -198,7 +199,7 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
                 core::array::from_fn(|axis| core::array::from_fn(|k| along[axis][k][i]));
             if start[i] == OVER {
                 for m in 0..M {
-                    sums[m][i] = self.sum_cells(m, places.first(i), &x, &y);
+                    sums[m][i] = self.sum_cells(self.meshes[m], places.first(i), &x, &y);
                 }
                 continue;
             }
@@ -234,7 +235,7 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
     #[inline(never)]
     fn sum_cells<const P: usize, const Q: usize>(
         &self,
-        m: usize,
+        mesh: &[T],
         first: [usize; 3],
         x: &[T; P],
         y: &[T; P],
@@ -244,7 +245,7 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
             for j in 0..P {
                 let weight = x[i] * y[j];
                 for k in 0..P {
-                    sum[k] += weight * self.meshes[m][self.cells.offset(first, [i, j, k])];
+                    sum[k] += weight * mesh.at(self.cells.offset(first, [i, j, k]));
                 }
             }
         }

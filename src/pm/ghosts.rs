@@ -14,6 +14,7 @@ use super::region::Region;
 use crate::exec::{Exec, Shared};
 use crate::real::Real;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// A stretch of indices on one axis that two regions share.
 #[derive(Clone, Copy, Default)]
@@ -60,7 +61,7 @@ fn shared(target: &Region, source: &Region, axis: usize) -> [Stretch; 2] {
     let n = target.n();
     let (held, wanted) = (source.count()[axis], target.count()[axis]);
     // Target index i is source index (i + ahead) mod n.
-    let ahead = (target.start()[axis] + n - source.start()[axis]) % n;
+    let ahead = (target.start()[axis] + n - source.start()[axis]).checked_rem(n).unwrap_or(0);
     let until_edge = wanted.min(n - ahead);
     let first = Stretch { target: 0, source: ahead, length: until_edge.min(held.saturating_sub(ahead)) };
     let second = Stretch { target: until_edge, source: 0, length: (wanted - until_edge).min(held) };
@@ -97,14 +98,14 @@ fn each_shared<T: Real>(
                     if to[2] == 1 && from[2] == 1 {
                         // SAFETY: the stretch lies inside the target, whose length is checked, and planes hold different cells.
                         let cells = unsafe { target.part(start, z.length) };
-                        for (to, &from) in cells.iter_mut().zip(&source[read..read + z.length]) {
+                        for (to, &from) in cells.iter_mut().zip(source.part(read..read + z.length)) {
                             put(to, from);
                         }
                     } else {
                         for i in 0..z.length {
                             // SAFETY: as above.
                             let cell = unsafe { target.part(start + i * to[2], 1) };
-                            put(&mut cell[0], source[read + i * from[2]]);
+                            cell.iter_mut().for_each(|cell| put(cell, source.at(read + i * from[2])));
                         }
                     }
                 }

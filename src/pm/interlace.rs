@@ -54,7 +54,7 @@ pub(super) fn interlace_with<T: Real>(
                 let sum = Brick::mode(n, x) + Brick::mode(n, y);
                 let nyquist = 2 * x == n || 2 * y == n;
                 let ordinary = if nyquist { 0 } else { run.length.min(n / 2 - z.min(n / 2)) };
-                let (modes, halved) = modes.split_at_mut(2 * ordinary);
+                let (modes, halved) = modes.split_at_mut_checked(2 * ordinary).unwrap_or_default();
                 let blocks = modes.chunks_mut(2 * BLOCK).zip(shifted.chunks(2 * BLOCK));
                 for (block, (modes, shifted)) in blocks.enumerate() {
                     let first = sum + (z + block * BLOCK) as i64;

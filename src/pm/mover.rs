@@ -15,6 +15,7 @@ use crate::fft::Fft3;
 use crate::initial::particles::Components;
 use crate::real::Real;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Reals that one chunk sets to zero.
 const PIECE: usize = 1 << 16;
@@ -91,7 +92,7 @@ impl<'a, 'b, T: Real> Mover<'a, 'b, T> {
     /// The force of particles at `at` into the meshes.
     pub(super) fn force(&self, at: &Positions<'_, T>, workshop: &mut Workshop<'_, T>) -> Result<()> {
         let Workshop { meshes, fft, scratch, exec } = workshop;
-        let [density, second, third] = meshes.each_mut().map(|mesh| &mut mesh[..fft.length()]);
+        let [density, second, third] = meshes.each_mut().map(|mesh| mesh.part_mut(..fft.length()));
         for_each_piece(*exec, density, PIECE, &|_, piece| piece.fill(T::ZERO))?;
         deposit(density, &self.region, at, None, &self.assignment, scratch, *exec)?;
         fft.forward(density)?;

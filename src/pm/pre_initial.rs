@@ -79,8 +79,9 @@ pub fn initial_conditions_at<T: Real>(
     let mut place = |axis: usize, first: &[T], second: Option<&[T]>| {
         let mut read = |to: &mut Components<'_, T>, field: &[T]| {
             let (start, stride) = to.parts();
+            let start = *start.get(axis).ok_or(Error::Range)?;
             // SAFETY: one component of what `to` stands for, borrowed for as long.
-            let mut column = unsafe { ColumnMut::strided(start[axis], stride, to.len()) };
+            let mut column = unsafe { ColumnMut::strided(start, stride, to.len()) };
             read_out(&mut column, field, &region, pre_initial, &assignment, own, exec)
         };
         read(position, first)?;

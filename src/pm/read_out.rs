@@ -16,6 +16,7 @@ use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Scratch of [`read_out`]: that of the deposit.
 ///
@@ -80,7 +81,7 @@ pub(super) fn read_out_with<T: Real>(
                 exec,
                 #[inline(always)]
                 // SAFETY: the particles exist, and each is handed over once.
-                |begin, count, [column]| unsafe { values.store(first + begin, &column[..count]) },
+                |begin, count, [column]| unsafe { values.store(first + begin, column.part(..count)) },
             )?;
         } else {
             sorter.write(positions, Fourth::One, first, count, &frame, simd, exec)?;
@@ -91,7 +92,7 @@ pub(super) fn read_out_with<T: Real>(
                 exec,
                 #[inline(always)]
                 // SAFETY: as above.
-                |begin, count, [column]| unsafe { values.store(first + begin, &column[..count]) },
+                |begin, count, [column]| unsafe { values.store(first + begin, column.part(..count)) },
             )?;
         }
     }

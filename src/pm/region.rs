@@ -29,7 +29,7 @@ impl Region {
         if (0..3).any(|axis| start[axis] > n || start[axis] == n && count[axis] > 0) {
             return Err(Error::Brick);
         }
-        Ok(Self { shape, start: start.map(|first| first % n) })
+        Ok(Self { shape, start: start.map(|first| first.checked_rem(n).unwrap_or(0)) })
     }
 
     /// The cells of a brick.

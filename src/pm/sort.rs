@@ -14,6 +14,7 @@ use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Particles sorted at a time. Fewer would visit the mesh more often, more would leave the last cache.
 pub(super) const BATCH: usize = 1 << 21;
@@ -82,12 +83,12 @@ impl<'a, T: Real> Sorter<'a, T> {
 
     /// Particles of a tile of the sorted batch.
     pub(super) fn tile(&self, tile: usize) -> &[Record<T>] {
-        &self.records[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+        self.records.part(range(self.starts, tile))
     }
 
     /// Runs of a tile of the batch.
     pub(super) fn runs(&self, tile: usize) -> &[Run] {
-        &self.runs[self.starts[tile] as usize..self.starts[tile + 1] as usize]
+        self.runs.part(range(self.starts, tile))
     }
 
     /// Hands the particles of each tile to `change`.
@@ -99,9 +100,9 @@ impl<'a, T: Real> Sorter<'a, T> {
         let starts = &*self.starts;
         let records = Shared::new(&mut *self.records);
         exec.parallel_for(starts.len() - 1, &|tile| {
-            let (start, end) = (starts[tile] as usize, starts[tile + 1] as usize);
+            let range = range(starts, tile);
             // SAFETY: tiles are disjoint parts of the batch.
-            change(tile, unsafe { records.part(start, end - start) });
+            change(tile, unsafe { records.part(range.start, range.len()) });
         })
     }
 
@@ -116,13 +117,13 @@ impl<'a, T: Real> Sorter<'a, T> {
     ) -> Result<()> {
         let tiles = self.starts.len() - 1;
         let chunks = count.div_ceil(CHUNK);
-        let (keys, records) = (&self.keys[..count], &*self.records);
-        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        let (keys, records) = (self.keys.part(..count), &*self.records);
+        let counters = Shared::new(self.counters.part_mut(..chunks * tiles));
         exec.parallel_for(chunks, &|chunk| {
             let begin = chunk * CHUNK;
             // SAFETY: chunks have counters of their own, inside the slice.
             let ends = unsafe { counters.part(chunk * tiles, tiles) };
-            let keys = &keys[begin..count.min(begin + CHUNK)];
+            let keys = keys.part(begin..count.min(begin + CHUNK));
             simd.vectorise(
                 #[inline(always)]
                 || {
@@ -132,12 +133,13 @@ impl<'a, T: Real> Sorter<'a, T> {
                         let length = BLOCK.min(keys.len() - first);
                         for i in (0..length).rev() {
                             // Where a particle some way ahead will be found, or near it.
-                            let later = keys[(first + i).saturating_sub(AHEAD)];
-                            let later = ends[usize::from(later)].wrapping_sub(1) as usize;
+                            let later = keys.at((first + i).saturating_sub(AHEAD));
+                            let later = ends.at(usize::from(later)).wrapping_sub(1) as usize;
                             prefetch::<_, true>(records.as_ptr().wrapping_add(later));
-                            let place = &mut ends[usize::from(keys[first + i])];
-                            *place -= 1;
-                            let record = &records[*place as usize];
+                            let key = usize::from(keys.at(first + i));
+                            let place = ends.at(key).wrapping_sub(1);
+                            ends.put(key, place);
+                            let record = records.at(place as usize);
                             for m in 0..M {
                                 columns[m][i] = record[m];
                             }
@@ -165,8 +167,8 @@ impl<'a, T: Real> Sorter<'a, T> {
         let chunks = count.div_ceil(CHUNK);
         let wrong = AtomicU32::new(0);
         let changes = AtomicUsize::new(0);
-        let keys = Shared::new(&mut self.keys[..count]);
-        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        let keys = Shared::new(self.keys.part_mut(..count));
+        let counters = Shared::new(self.counters.part_mut(..chunks * tiles));
         exec.parallel_for(chunks, &|chunk| {
             let begin = chunk * CHUNK;
             let length = CHUNK.min(count - begin);
@@ -177,7 +179,7 @@ impl<'a, T: Real> Sorter<'a, T> {
                 || {
                     let flags = count_tiles(positions, first + begin, frame, tiling, keys, counters);
                     // No more than a chunk has particles, so 16 bits do, and are faster.
-                    let changed: u16 = keys.iter().zip(&keys[1..]).map(|(a, b)| u16::from(a != b)).sum();
+                    let changed: u16 = keys.windows(2).map(|pair| u16::from(pair[0] != pair[1])).sum();
                     (flags, changed)
                 },
             );
@@ -193,28 +195,28 @@ impl<'a, T: Real> Sorter<'a, T> {
     pub(super) fn write_runs(&mut self, count: usize, exec: &dyn Exec) -> Result<()> {
         let tiles = self.starts.len() - 1;
         let chunks = count.div_ceil(CHUNK);
-        let keys = &self.keys[..count];
-        let chunk_keys = |chunk: usize| &keys[chunk * CHUNK..count.min((chunk + 1) * CHUNK)];
+        let keys = self.keys.part(..count);
+        let chunk_keys = |chunk: usize| keys.part(chunk * CHUNK..count.min((chunk + 1) * CHUNK));
         {
-            let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+            let counters = Shared::new(self.counters.part_mut(..chunks * tiles));
             exec.parallel_for(chunks, &|chunk| {
                 // SAFETY: chunks have counters of their own, inside the slice.
                 let counters = unsafe { counters.part(chunk * tiles, tiles) };
                 counters.fill(0);
-                each_run(chunk_keys(chunk), |key, _| counters[usize::from(key)] += 1);
+                each_run(chunk_keys(chunk), |key, _| count_in(counters, key, 1));
             })?;
         }
-        sum(&mut self.counters[..chunks * tiles], self.starts);
-        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        sum(self.counters.part_mut(..chunks * tiles), self.starts);
+        let counters = Shared::new(self.counters.part_mut(..chunks * tiles));
         let runs = Shared::new(&mut *self.runs);
         exec.parallel_for(chunks, &|chunk| {
             // SAFETY: chunks have counters of their own, inside the slice.
             let places = unsafe { counters.part(chunk * tiles, tiles) };
             let mut begin = chunk * CHUNK;
             each_run(chunk_keys(chunk), |key, length| {
-                let place = &mut places[usize::from(key)];
+                let Some(place) = places.get_mut(usize::from(key)) else { return };
                 // SAFETY: this run was counted for this tile and chunk, so the place is its own; runs of particles in order are no more than fit.
-                unsafe { runs.part(*place as usize, 1)[0] = [begin as u32, length as u32] };
+                unsafe { runs.part(*place as usize, 1).fill([begin as u32, length as u32]) };
                 *place += 1;
                 begin += length;
             });
@@ -235,16 +237,16 @@ impl<'a, T: Real> Sorter<'a, T> {
         let tiles = self.starts.len() - 1;
         let chunks = count.div_ceil(CHUNK);
         let wrong = AtomicU32::new(0);
-        sum(&mut self.counters[..chunks * tiles], self.starts);
-        let keys = &self.keys[..count];
-        let counters = Shared::new(&mut self.counters[..chunks * tiles]);
+        sum(self.counters.part_mut(..chunks * tiles), self.starts);
+        let keys = self.keys.part(..count);
+        let counters = Shared::new(self.counters.part_mut(..chunks * tiles));
         let records = Shared::new(&mut *self.records);
         exec.parallel_for(chunks, &|chunk| {
             let begin = chunk * CHUNK;
             let length = CHUNK.min(count - begin);
             // SAFETY: chunks have counters of their own, inside the slice.
             let places = unsafe { counters.part(chunk * tiles, tiles) };
-            let keys = &keys[begin..begin + length];
+            let keys = keys.part(begin..begin + length);
             let batch = Batch { positions, fourth, first, begin };
             let flags = simd.vectorise(
                 #[inline(always)]
@@ -256,6 +258,11 @@ impl<'a, T: Real> Sorter<'a, T> {
     }
 }
 
+/// Places of what belongs to a tile.
+fn range(starts: &[u32], tile: usize) -> core::ops::Range<usize> {
+    starts.at(tile) as usize..starts.at(tile + 1) as usize
+}
+
 /// Hands over the stretches of equal keys and their lengths.
 #[inline(always)]
 fn each_run(mut keys: &[u16], mut take: impl FnMut(u16, usize)) {
@@ -264,9 +271,17 @@ fn each_run(mut keys: &[u16], mut take: impl FnMut(u16, usize)) {
         let (steps, _) = keys.as_chunks::<STEP>();
         let whole = |step: &&[u16; STEP]| step.iter().fold(true, |same, &other| same & (other == key));
         let length = STEP * steps.iter().take_while(whole).count();
-        let rest = keys[length..].iter().take_while(|&&other| other == key).count();
+        let rest = keys.iter().skip(length).take_while(|&&other| other == key).count();
         take(key, length + rest);
-        keys = &keys[length + rest..];
+        keys = keys.part(length + rest..);
+    }
+}
+
+/// Adds to the counter of a tile.
+#[inline(always)]
+fn count_in(counters: &mut [u32], key: u16, particles: u32) {
+    if let Some(counter) = counters.get_mut(usize::from(key)) {
+        *counter += particles;
     }
 }
 
@@ -280,15 +295,16 @@ pub(super) fn check(wrong: &AtomicU32) -> Result<()> {
 
 /// Turns counts by chunk and tile into first places, and notes where each tile starts.
 fn sum(counters: &mut [u32], starts: &mut [u32]) {
-    let tiles = starts.len() - 1;
+    let Some((end, starts)) = starts.split_last_mut() else { return };
+    let tiles = starts.len().max(1);
     let mut place = 0;
-    for tile in 0..tiles {
-        starts[tile] = place;
+    for (tile, start) in starts.iter_mut().enumerate() {
+        *start = place;
         for counter in counters.iter_mut().skip(tile).step_by(tiles) {
             place += core::mem::replace(counter, place);
         }
     }
-    starts[tiles] = place;
+    *end = place;
 }
 
 /// Loads a block of up to [`BLOCK`] particles and turns it into coordinates and cells. Missing particles repeat the first one.
@@ -308,7 +324,7 @@ pub(super) fn block<T: Real>(
     for axis in 0..3 {
         if count < BLOCK {
             let repeated = v[axis][0];
-            v[axis][count..].fill(repeated);
+            v[axis].part_mut(count..).fill(repeated);
         }
         wrong |= frame.locate(axis, &mut v[axis], &mut index[axis]);
     }
@@ -334,14 +350,16 @@ fn count_tiles<T: Real>(
         for i in 0..BLOCK {
             key[i] = tiling.tile(index[0][i], index[1][i]);
         }
-        keys.copy_from_slice(&key[..keys.len()]);
+        for (key, &found) in keys.iter_mut().zip(&key) {
+            *key = found;
+        }
         if wrong == 0 {
             // One by one each count would wait for the last, where neighbours share a tile.
             if key.iter().fold(true, |same, &other| same & (other == key[0])) {
-                counters[usize::from(key[0])] += keys.len() as u32;
+                count_in(counters, key[0], keys.len() as u32);
             } else {
                 for &key in &*keys {
-                    counters[usize::from(key)] += 1;
+                    count_in(counters, key, 1);
                 }
             }
         }
@@ -388,9 +406,9 @@ impl<T: Real> Batch<'_, '_, T> {
                 packed[i] = [v[0][i], v[1][i], v[2][i], fourth[i]];
             }
             for (record, &key) in packed.iter().zip(keys) {
-                let place = &mut places[usize::from(key)];
+                let Some(place) = places.get_mut(usize::from(key)) else { continue };
                 // SAFETY: the first pass counted this particle for this tile and chunk, so the place is inside the batch and its own.
-                unsafe { records.part(*place as usize, 1)[0] = *record };
+                unsafe { records.part(*place as usize, 1).fill(*record) };
                 *place += 1;
             }
         }

@@ -36,9 +36,10 @@ impl Colour {
     }
 
     /// The number of its tile `i`.
-    pub(super) const fn tile(&self, i: usize) -> usize {
-        let x = self.first[0] + 2 * (i / self.count[1]);
-        let y = self.first[1] + 2 * (i % self.count[1]);
+    pub(super) fn tile(&self, i: usize) -> usize {
+        let row = i.checked_div(self.count[1]).unwrap_or(0);
+        let x = self.first[0] + 2 * row;
+        let y = self.first[1] + 2 * (i - row * self.count[1]);
         x * self.stride + y
     }
 }
@@ -77,7 +78,8 @@ impl Tiling {
 
     /// The first cells of a tile's particles on axes 0 and 1.
     pub(super) fn first_cells(&self, tile: usize) -> [Range<usize>; 2] {
-        let at = [tile / self.count[1], tile % self.count[1]];
+        let row = tile.checked_div(self.count[1]).unwrap_or(0);
+        let at = [row, tile - row * self.count[1]];
         [0, 1].map(|axis| {
             let last = at[axis] + 1 == self.count[axis];
             let end = if last { self.limit[axis] } else { (at[axis] + 1) << self.log_width };

@@ -1,5 +1,7 @@
 //! Small matrix products.
 
+use crate::within::Within;
+
 /// Rows that are made at a time.
 pub(super) const ROWS: usize = 4;
 
@@ -24,8 +26,8 @@ pub(super) fn contract(
 ) {
     for start in (0..columns).step_by(COLUMNS) {
         let mut total = [[0.0; COLUMNS]; ROWS];
-        let lefts = left.chunks(left_row).map(|left| left[row..].first_chunk::<ROWS>());
-        let rights = right.chunks(right_row).map(|right| right[start..].first_chunk::<COLUMNS>());
+        let lefts = left.chunks(left_row.max(1)).map(|left| left.part(row..).first_chunk::<ROWS>());
+        let rights = right.chunks(right_row.max(1)).map(|right| right.part(start..).first_chunk::<COLUMNS>());
         for (left, right) in lefts.zip(rights).take(depth) {
             let (Some(left), Some(right)) = (left, right) else { continue };
             for r in 0..ROWS {
@@ -35,7 +37,8 @@ pub(super) fn contract(
             }
         }
         for (r, total) in total.iter().enumerate() {
-            out[r * out_row + start..][..COLUMNS].copy_from_slice(total);
+            let at = r * out_row + start;
+            out.part_mut(at..at + COLUMNS).copy(total);
         }
     }
 }

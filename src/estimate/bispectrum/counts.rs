@@ -22,6 +22,7 @@ use crate::mesh::{Brick, Space};
 use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// The largest distance of a sum from an integer.
 const RESIDUAL: f64 = 0.1;
@@ -57,7 +58,7 @@ impl Sizes {
         Brick::whole(n, Space::Configuration)?;
         check_shells(edges, n)?;
         check_triangles(triangles, edges.len() - 1)?;
-        let edge = edges[edges.len() - 1];
+        let edge = edges.at(edges.len() - 1);
         let depth = squares_below(edge) as usize;
         // On a mesh of three radii and one nothing wraps; the caller's mesh may be smaller, and then wraps as it does.
         let side = n.min((3 * (depth - 1) + 1).next_multiple_of(2));
@@ -183,7 +184,7 @@ pub fn triangle_counts(
                 };
                 simd.vectorise(
                     #[inline(always)]
-                    || plane.fill_field(field, weighted, work, edges[s], edges[s + 1]),
+                    || plane.fill_field(field, weighted, work, edges.at(s), edges.at(s + 1)),
                 );
             })?;
         }
@@ -212,7 +213,7 @@ pub fn triangle_counts(
     }
     let cells = side as f64 * side as f64 * side as f64;
     let count = |slot: u32| {
-        let [high, low] = totals[slot as usize];
+        let [high, low] = totals.at(slot as usize);
         (high + low) / cells
     };
     let doubtful = |x: f64| !(libm::fabs(x - libm::rint(x)) < RESIDUAL && x < LARGEST);
@@ -220,7 +221,7 @@ pub fn triangle_counts(
         return Err(Error::Convergence);
     }
     for (&t, &slot) in order.iter().zip(plan.slots) {
-        counts[t as usize] = libm::rint(count(slot)) as u64;
+        counts.put(t as usize, libm::rint(count(slot)) as u64);
     }
     Ok(())
 }
@@ -228,8 +229,8 @@ pub fn triangle_counts(
 /// The blocks of a piece, their first sum, and the number of their sums.
 fn piece_of<'a>(plan: &Plan<'a>, piece: usize) -> (&'a [Block], usize, usize) {
     let end = plan.blocks.len().min((piece + 1) * PIECE);
-    let blocks = &plan.blocks[piece * PIECE..end];
-    let first = blocks[0].first as usize;
+    let blocks = plan.blocks.part(piece * PIECE..end);
+    let first = blocks.first().map_or(0, |block| block.first as usize);
     let last = plan.blocks.get(end).map_or(plan.sums, |block| block.first as usize);
     (blocks, first, last - first)
 }
@@ -245,7 +246,7 @@ fn add([high, low]: &mut [f64; 2], term: f64) {
 
 /// cos(2 pi t/m), from the half turn where t and m - t are one number.
 fn cosine(t: usize, side: usize) -> f64 {
-    let t = t % side;
+    let t = t.checked_rem(side).unwrap_or(0);
     sin_cos_turns(t.min(side - t) as f64 / side as f64).1
 }
 
@@ -256,7 +257,7 @@ fn signs(mode: usize) -> f64 {
 
 /// Row b, column x: cos(2 pi b x/m) for both signs of b.
 fn fill_cosines(cosines: &mut [f64], row: usize, side: usize) {
-    for (b, line) in cosines.chunks_exact_mut(row).enumerate() {
+    for (b, line) in cosines.chunks_exact_mut(row.max(1)).enumerate() {
         for (x, value) in line.iter_mut().enumerate() {
             *value = signs(b) * cosine(b * x, side);
         }
@@ -277,7 +278,7 @@ fn fill_weights(weights: &mut [f64], z: usize, side: usize) {
     weights.fill(0.0);
     let mirrors = |a: usize| if a == 0 || 2 * a == side { 1.0 } else { 2.0 };
     for y in 0..=z {
-        for (x, weight) in weights[row_start(y)..][..=y].iter_mut().enumerate() {
+        for (x, weight) in weights.part_mut(row_start(y)..).iter_mut().take(y + 1).enumerate() {
             let orders = match (x == y, y == z) {
                 (true, true) => 1.0,
                 (false, false) => 6.0,
@@ -304,33 +305,32 @@ impl Plane<'_> {
     #[inline(always)]
     fn fill_field(&self, field: &mut [f64], weighted: &mut [f64], work: &mut [f64], lo: u64, hi: u64) {
         let Sizes { line, row, depth, .. } = *self.sizes;
-        let (over_l, over_j) = work.split_at_mut(line * depth);
+        let (over_l, over_j) = work.split_at_mut_checked(line * depth).unwrap_or_default();
         let (lo, hi) = (lo as usize, hi as usize);
-        let within = |edge: usize, square: usize| self.below[edge.saturating_sub(square)] as usize;
+        let within = |edge: usize, square: usize| self.below.at(edge.saturating_sub(square)) as usize;
         let radius = within(hi, 0);
         // Over l: rows j, columns i; zero beyond the sphere.
         let lines = radius.next_multiple_of(ROWS);
         for j in 0..radius {
-            let line = &mut over_l[j * line..][..lines];
+            let line = over_l.part_mut(j * line..j * line + lines);
             for (i, value) in line.iter_mut().enumerate() {
                 let square = i * i + j * j;
-                let (upper, lower) = (self.prefix[within(hi, square)], self.prefix[within(lo, square)]);
+                let (upper, lower) = (self.prefix.at(within(hi, square)), self.prefix.at(within(lo, square)));
                 *value = (upper[0] - lower[0]) + (upper[1] - lower[1]);
             }
         }
         // Over j: rows i, columns y.
         for i in (0..lines).step_by(ROWS) {
-            let rows = &mut over_j[i * row..];
+            let rows = over_j.part_mut(i * row..);
             contract(rows, row, over_l, line, i, self.cosines, row, self.z + ROWS, within(hi, i * i));
         }
         // Over i: rows y, columns x.
         for y in (0..=self.z).step_by(ROWS) {
-            let (rows, length) = (&mut field[row_start(y)..], row_length(y));
+            let (rows, length) = (field.part_mut(row_start(y)..), row_length(y));
             contract(rows, length, over_j, row, y, self.cosines, row, length, radius);
         }
         let cells = points(self.z);
-        let (field, weighted) = (&field[..cells], &mut weighted[..cells]);
-        for ((weighted, value), weight) in weighted.iter_mut().zip(field).zip(self.weights) {
+        for ((weighted, value), weight) in weighted.iter_mut().zip(&*field).zip(self.weights).take(cells) {
             *weighted = value * weight;
         }
     }

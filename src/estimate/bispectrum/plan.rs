@@ -6,6 +6,8 @@
 use super::triangles::{Triangle, sorted};
 use crate::scratch::Plain;
 use crate::scratch::sealed::Sealed;
+use crate::sort::sort_by_key;
+use crate::within::Within;
 
 /// Rows of a block.
 pub(super) const ROWS: usize = 2;
@@ -51,30 +53,30 @@ pub(super) fn plan<'a>(
     triangles: &[Triangle],
 ) -> Plan<'a> {
     let key = |t: u32| {
-        let [i, j, k] = sorted(triangles[t as usize]);
+        let [i, j, k] = sorted(triangles.at(t as usize));
         (j, i, k)
     };
-    order.sort_unstable_by_key(|&t| key(t));
+    sort_by_key(order, |&t| (key(t), t));
     let order = &*order;
     // The end of the row (i, j) that begins at `start`.
     let row_end = |start: usize| {
-        let (j, i, _) = key(order[start]);
-        order[start..].partition_point(|&t| (key(t).0, key(t).1) == (j, i)) + start
+        let (j, i, _) = key(order.at(start));
+        order.part(start..).partition_point(|&t| (key(t).0, key(t).1) == (j, i)) + start
     };
     let (mut used, mut sums, mut at) = (0, 0, 0);
     while at < order.len() {
-        let (j, i, _) = key(order[at]);
+        let (j, i, _) = key(order.at(at));
         let second = row_end(at);
         let paired = order.get(second).is_some_and(|&t| key(t).0 == j);
         let end = if paired { row_end(second) } else { second };
-        let rows = [i, if paired { key(order[second]).1 } else { i }];
+        let rows = [i, if paired { key(order.at(second)).1 } else { i }];
         let height = if paired { 2 } else { 1 };
         // The union of both rows' columns, in increasing order.
         let columns = || {
             let mut last = None;
             core::iter::from_fn(move || {
                 let next = |row: core::ops::Range<usize>| {
-                    let row = &order[row];
+                    let row = order.part(row);
                     let skip = row.partition_point(|&t| last.is_some_and(|last| key(t).2 <= last));
                     row.get(skip).map(|&t| key(t).2)
                 };
@@ -96,22 +98,24 @@ pub(super) fn plan<'a>(
                 rows,
                 columns: [0; COLUMNS],
             };
-            for (place, k) in block.columns[..count].iter_mut().zip(union.by_ref()) {
+            for (place, k) in block.columns.iter_mut().take(count).zip(union.by_ref()) {
                 *place = k;
             }
             for (row, range) in [at..second, second..end].into_iter().enumerate() {
-                for (slot, &t) in slots[range.clone()].iter_mut().zip(&order[range]) {
-                    let column = block.columns[..count].iter().position(|&k| k == key(t).2);
+                for (slot, &t) in slots.part_mut(range.clone()).iter_mut().zip(order.part(range)) {
+                    let column = block.columns.iter().take(count).position(|&k| k == key(t).2);
                     if let Some(column) = column {
                         *slot = (sums + row * count + column) as u32;
                     }
                 }
             }
-            blocks[used] = block;
+            if let Some(place) = blocks.get_mut(used) {
+                *place = block;
+            }
             used += 1;
             sums += height as usize * count;
         }
         at = end;
     }
-    Plan { blocks: &blocks[..used], slots: &slots[..order.len()], sums }
+    Plan { blocks: blocks.part(..used), slots: slots.part(..order.len()), sums }
 }

@@ -6,6 +6,7 @@
 
 use super::plan::{Block, COLUMNS, ROWS};
 use crate::real::Real;
+use crate::within::Within;
 
 /// Lanes of f32: a 256-bit register.
 pub(super) const LANES_F32: usize = 8;
@@ -36,7 +37,7 @@ pub(super) struct Tile<'a, T> {
 impl<'a, T: Real> Tile<'a, T> {
     fn vectors<const L: usize>(&self, fields: &'a [T], shell: u32) -> &'a [[T; L]] {
         let start = shell as usize * self.apart + self.start;
-        fields[start..start + self.length].as_chunks().0
+        fields.part(start..start + self.length).as_chunks().0
     }
 }
 
@@ -58,7 +59,7 @@ fn add_blocks<T: Real, const L: usize>(
     tile: &Tile<'_, T>,
 ) {
     for block in blocks {
-        let sums = &mut sums[block.first as usize - first..];
+        let sums = sums.part_mut(block.first as usize - first..);
         match block.shape {
             [1, 1] => add_block::<T, L, 1, 1>(sums, block, tile),
             [1, 2] => add_block::<T, L, 1, 2>(sums, block, tile),
@@ -76,6 +77,12 @@ fn add_blocks<T: Real, const L: usize>(
     }
 }
 
+/// Lanes of sum `at`.
+#[inline(always)]
+fn read<T: Real, const L: usize>(sums: &[[T; L]], at: usize) -> [T; L] {
+    sums.get(at).copied().unwrap_or([T::ZERO; L])
+}
+
 #[inline(always)]
 fn add_block<T: Real, const L: usize, const R: usize, const C: usize>(
     sums: &mut [[T; L]],
@@ -85,7 +92,7 @@ fn add_block<T: Real, const L: usize, const R: usize, const C: usize>(
     let middle = tile.vectors::<L>(tile.middle, block.middle);
     let rows: [_; R] = core::array::from_fn(|r| tile.vectors::<L>(tile.outer, block.rows[r]));
     let columns: [_; C] = core::array::from_fn(|c| tile.vectors::<L>(tile.outer, block.columns[c]));
-    let mut total: [[[T; L]; C]; R] = core::array::from_fn(|r| core::array::from_fn(|c| sums[r * C + c]));
+    let mut total: [[[T; L]; C]; R] = core::array::from_fn(|r| core::array::from_fn(|c| read(sums, r * C + c)));
     for v in 0..middle.len() {
         let mut pair = [[T::ZERO; L]; R];
         for r in 0..R {
@@ -107,7 +114,7 @@ fn add_block<T: Real, const L: usize, const R: usize, const C: usize>(
     }
     for r in 0..R {
         for c in 0..C {
-            sums[r * C + c] = total[r][c];
+            sums.put(r * C + c, total[r][c]);
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::status::{Error, Result};
 use crate::walk::walk;
+use crate::within::Within;
 
 /// `Table` for edges that are fewer than two or not increasing.
 pub(super) fn check_edges(edges: &[u64]) -> Result<()> {
@@ -20,7 +21,7 @@ pub(super) fn check_edges(edges: &[u64]) -> Result<()> {
 pub(super) fn check_shells(edges: &[u64], n: usize) -> Result<()> {
     check_edges(edges)?;
     let half = n as u64 / 2;
-    let last = edges[edges.len() - 1];
+    let last = edges.at(edges.len() - 1);
     if half.checked_mul(half).is_none_or(|square| last > square) { Err(Error::Range) } else { Ok(()) }
 }
 
@@ -66,8 +67,8 @@ pub fn shell_modes<T: Real>(
             2 * l.saturating_sub(run.index[2]).min(run.length)
         };
         let (first, last) = (end(lo), end(hi));
-        row[..first].fill(T::ZERO);
-        row[first..last].copy_from_slice(&from[first..last]);
-        row[last..].fill(T::ZERO);
+        row.part_mut(..first).fill(T::ZERO);
+        row.part_mut(first..last).copy(from.part(first..last));
+        row.part_mut(last..).fill(T::ZERO);
     })
 }

@@ -13,7 +13,9 @@ use crate::exec::Exec;
 use crate::fft::Fft3;
 use crate::real::Real;
 use crate::scratch::{ALIGN, Arena, Layout};
+use crate::sort::sort_by_key;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// No shell, no mesh.
 const NONE: u32 = u32::MAX;
@@ -84,55 +86,56 @@ pub fn bispectrum<T: Real>(
     // Shell in each mesh, and the last batch that needed it. More meshes than shells are of no use.
     let places = arena.take::<[u32; 2]>(shells)?;
     let mut work = Work::take(&mut arena, &cells, shells, triangles.len())?;
-    let places = &mut places[..shells.min(meshes)];
+    let places = places.part_mut(..shells.min(meshes));
     exact.fill(ExactSum::ZERO);
     number(order);
     places.fill([NONE, 0]);
     needed.fill(0);
     let groups = Groups::new(ranks, triangles, places.len());
-    order.sort_unstable_by_key(|&t| groups.turn(triangles[t as usize]));
+    sort_by_key(order, |&t| (groups.turn(triangles.at(t as usize)), t));
     let (mut transforms, mut batch, mut at) = (0, 0, 0);
     // Transforms may be collective: a process whose sums are not finite goes on to the end with the others.
     let mut outcome = Ok(());
     while at < order.len() {
-        let turn = |t: u32| groups.turn(triangles[t as usize]);
-        let pair = turn(order[at]).0;
-        let pair_end = at + order[at..].partition_point(|&t| turn(t).0 == pair);
+        let turn = |t: u32| groups.turn(triangles.at(t as usize));
+        let pair = turn(order.at(at)).0;
+        let pair_end = at + order.part(at..).partition_point(|&t| turn(t).0 == pair);
         let resident = at..pair_end;
         while at < pair_end {
             batch += 1;
             let end = groups.batch_end(order, at, pair_end, triangles);
-            let in_pair = order[resident.clone()]
+            let in_pair = order
+                .part(resident.clone())
                 .iter()
-                .flat_map(|&t| distinct(triangles[t as usize]).filter(|&s| groups.in_pair(pair, s)));
-            let in_batch = order[at..end].iter().flat_map(|&t| distinct(triangles[t as usize]));
+                .flat_map(|&t| distinct(triangles.at(t as usize)).filter(|&s| groups.in_pair(pair, s)));
+            let in_batch = order.part(at..end).iter().flat_map(|&t| distinct(triangles.at(t as usize)));
             for shell in in_pair.chain(in_batch) {
-                needed[shell as usize] = batch;
+                needed.put(shell as usize, batch);
             }
             for [shell, last] in places.iter_mut() {
-                if *shell != NONE && needed[*shell as usize] == batch {
+                if *shell != NONE && needed.at(*shell as usize) == batch {
                     *last = batch;
                 }
             }
             for shell in 0..shells {
-                if needed[shell] != batch || places.iter().any(|place| place[0] == shell as u32) {
+                if needed.at(shell) != batch || places.iter().any(|place| place[0] == shell as u32) {
                     continue;
                 }
                 let oldest = places.iter().enumerate().min_by_key(|(_, place)| place[1]);
                 let Some(mesh) = oldest.map(|(mesh, _)| mesh) else { return Err(Error::Length) };
-                places[mesh] = [shell as u32, batch];
-                let field = &mut fields[mesh * apart..][..length];
-                shell_modes(field, modes, &fourier, edges[shell], edges[shell + 1], exec)?;
+                places.put(mesh, [shell as u32, batch]);
+                let field = fields.part_mut(mesh * apart..mesh * apart + length);
+                shell_modes(field, modes, &fourier, edges.at(shell), edges.at(shell + 1), exec)?;
                 fft.inverse(field)?;
                 transforms += 1;
             }
             let (shared, places) = (&*fields, &*places);
             let field = |shell: usize| {
                 let mesh = places.iter().position(|place| place[0] == shell as u32);
-                mesh.map_or(&shared[..0], |mesh| &shared[mesh * apart..][..length])
+                mesh.map_or(&shared[..0], |mesh| shared.part(mesh * apart..mesh * apart + length))
             };
             if outcome.is_ok() {
-                let order = &mut order[at..end];
+                let order = order.part_mut(at..end);
                 match accumulate(exact, triangles, order, &field, &cells, &mut work, exec) {
                     Err(Error::NotFinite) => outcome = Err(Error::NotFinite),
                     other => other?,
@@ -161,7 +164,7 @@ impl<'a> Groups<'a> {
     fn new(ranks: &'a mut [u32], triangles: &[Triangle], meshes: usize) -> Self {
         ranks.fill(NONE);
         for &shell in triangles.iter().flatten() {
-            ranks[shell as usize] = 0;
+            ranks.put(shell as usize, 0);
         }
         let mut used = 0;
         for rank in ranks.iter_mut().filter(|rank| **rank == 0) {
@@ -169,12 +172,12 @@ impl<'a> Groups<'a> {
             used += 1;
         }
         let third = (meshes / 5).max(1);
-        let size = if used as usize <= meshes { used.max(1) } else { (meshes - third) as u32 / 2 };
+        let size = if used as usize <= meshes { used.max(1) } else { ((meshes - third) as u32 / 2).max(1) };
         Self { ranks, size, third, count: used.div_ceil(size) }
     }
 
     fn group(&self, shell: u32) -> u32 {
-        self.ranks[shell as usize] / self.size
+        self.ranks.at(shell as usize) / self.size.max(1)
     }
 
     /// When a triangle has its turn: with which pair of groups, and with which third shell, 0 where all are in the pair.
@@ -189,7 +192,7 @@ impl<'a> Groups<'a> {
         };
         // Up and down in turns, so that only one group changes from pair to pair.
         let step = if a % 2 == 0 { b } else { self.count - 1 - b };
-        let third = if self.in_pair((a, step), k) { 0 } else { 1 + self.ranks[k as usize] };
+        let third = if self.in_pair((a, step), k) { 0 } else { 1 + self.ranks.at(k as usize) };
         ((a, step), third)
     }
 
@@ -201,7 +204,7 @@ impl<'a> Groups<'a> {
 
     /// The end of the triangles from `at` on that the meshes can serve together.
     fn batch_end(&self, order: &[u32], at: usize, end: usize, triangles: &[Triangle]) -> usize {
-        let third = |place: usize| self.turn(triangles[order[place] as usize]).1;
+        let third = |place: usize| self.turn(triangles.at(order.at(place) as usize)).1;
         let (mut last, mut thirds) = (0, 0);
         for place in at..end {
             if third(place) != last {

@@ -13,6 +13,7 @@ use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Cells of a tile: whole registers, small enough for the fields of many shells in the second cache. Not a power of two: fields that far
 /// apart would share the same sets of it.
@@ -106,7 +107,7 @@ pub(super) fn accumulate<'f, T: Real>(
     let simd = Simd::detect();
     let lengths = [apart::<T>(shells * TILE), apart::<T>(plan.sums * lanes::<T>()), apart::<f64>(plan.sums)];
     let planes = brick.count()[0];
-    for first in (0..planes).step_by(work.wave) {
+    for first in (0..planes).step_by(work.wave.max(1)) {
         let count = work.wave.min(planes - first);
         {
             let (tiles, sums) = (Shared::new(work.tiles), Shared::new(work.sums));
@@ -123,18 +124,20 @@ pub(super) fn accumulate<'f, T: Real>(
                 let plane = Plane { brick, x: first + i, used, field, plan };
                 simd.vectorise(
                     #[inline(always)]
-                    || plane.sum(&mut partial[..plan.sums], tiles, sums),
+                    || plane.sum(partial.part_mut(..plan.sums), tiles, sums),
                 );
             })?;
         }
-        let partial = &work.partial[..count * lengths[2]];
+        let partial = work.partial.part(..count * lengths[2]);
         for (&t, &slot) in order.iter().zip(plan.slots) {
-            for plane in partial.chunks_exact(lengths[2]) {
-                let term = plane[slot as usize];
+            for plane in partial.chunks_exact(lengths[2].max(1)) {
+                let term = plane.at(slot as usize);
                 if !term.is_finite() {
                     return Err(Error::NotFinite);
                 }
-                exact[t as usize].add(term);
+                if let Some(sum) = exact.get_mut(t as usize) {
+                    sum.add(term);
+                }
             }
         }
     }
@@ -144,17 +147,17 @@ pub(super) fn accumulate<'f, T: Real>(
 /// The shells that some triangle names, in increasing order.
 fn used_shells<'a>(used: &'a mut [u32], triangles: &[Triangle], order: &[u32]) -> &'a [u32] {
     used.fill(0);
-    for shell in order.iter().flat_map(|&t| triangles[t as usize]) {
-        used[shell as usize] = 1;
+    for shell in order.iter().flat_map(|&t| triangles.at(t as usize)) {
+        used.put(shell as usize, 1);
     }
     let mut count = 0;
     for shell in 0..used.len() {
         if used[shell] == 1 {
-            used[count] = shell as u32;
+            used.put(count, shell as u32);
             count += 1;
         }
     }
-    &used[..count]
+    used.part(..count)
 }
 
 struct Plane<'a, 'f, T> {
@@ -170,7 +173,7 @@ impl<T: Real> Plane<'_, '_, T> {
     #[inline(always)]
     fn sum(&self, partial: &mut [f64], tiles: &mut [T], sums: &mut [T]) {
         let lanes = lanes::<T>();
-        let sums = &mut sums[..lanes * self.plan.sums];
+        let sums = sums.part_mut(..lanes * self.plan.sums);
         partial.fill(0.0);
         let cells = self.brick.count()[1] * self.brick.count()[2];
         for stretch in (0..cells).step_by(STRETCH * TILE) {
@@ -180,9 +183,9 @@ impl<T: Real> Plane<'_, '_, T> {
                 let count = TILE.min(end - start);
                 let length = count.next_multiple_of(lanes);
                 for &shell in self.used {
-                    let tile = &mut tiles[shell as usize * TILE..][..length];
-                    self.load(&mut tile[..count], (self.field)(shell as usize), start);
-                    tile[count..].fill(T::ZERO);
+                    let at = shell as usize * TILE;
+                    self.load(tiles.part_mut(at..at + count), (self.field)(shell as usize), start);
+                    tiles.part_mut(at + count..at + length).fill(T::ZERO);
                 }
                 let tile = Tile { outer: tiles, middle: tiles, apart: TILE, start: 0, length };
                 add_tile(sums, 0, self.plan.blocks, &tile);
@@ -197,17 +200,17 @@ impl<T: Real> Plane<'_, '_, T> {
     #[inline(always)]
     fn load(&self, tile: &mut [T], field: &[T], start: usize) {
         let (row, stride) = (self.brick.count()[2], self.brick.stride());
-        let (mut y, mut z) = (start / row, start % row);
+        let (mut y, mut z) = (start.checked_div(row).unwrap_or(0), start.checked_rem(row).unwrap_or(0));
         let mut rest = tile;
         while !rest.is_empty() {
-            let count = rest.len().min(row - z);
+            let count = rest.len().min((row - z).max(1));
             let (now, later) = rest.split_at_mut(count);
             let offset = self.x * stride[0] + y * stride[1] + z * stride[2];
             if stride[2] == 1 {
-                now.copy_from_slice(&field[offset..offset + count]);
+                now.copy(field.part(offset..offset + count));
             } else {
                 for (i, cell) in now.iter_mut().enumerate() {
-                    *cell = field[offset + i * stride[2]];
+                    *cell = field.at(offset + i * stride[2]);
                 }
             }
             (rest, y, z) = (later, y + 1, 0);
@@ -249,7 +252,7 @@ pub fn bispectrum_sums<T: Real>(
     scratch: &mut [u8],
     exec: &dyn Exec,
 ) -> Result<()> {
-    sums_of_fields(sums, triangles, fields.len(), &|shell| fields[shell], brick, scratch, exec)
+    sums_of_fields(sums, triangles, fields.len(), &|shell| fields.at(shell), brick, scratch, exec)
 }
 
 /// [`bispectrum_sums`] of fields that a function finds.

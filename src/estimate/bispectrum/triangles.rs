@@ -2,6 +2,7 @@
 
 use super::shells::check_edges;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Three shells, counted from 0.
 pub type Triangle = [u32; 3];
@@ -27,10 +28,10 @@ pub(super) fn check_triangles(triangles: &[Triangle], shells: usize) -> Result<(
 /// Can these shells, in increasing order, close a triangle?
 fn closes(edges: &[u64], centres: Option<&[f64]>, [i, j, k]: [usize; 3]) -> bool {
     match centres {
-        Some(c) => c[k] <= (c[i] + c[j]) * (1.0 + SLACK),
+        Some(c) => c.at(k) <= (c.at(i) + c.at(j)) * (1.0 + SLACK),
         None => {
             // sqrt(c) <= sqrt(a) + sqrt(b) in integers, for the largest a, b and the smallest c.
-            let (a, b, c) = (edges[i + 1] - 1, edges[j + 1] - 1, edges[k]);
+            let (a, b, c) = (edges.at(i + 1) - 1, edges.at(j + 1) - 1, edges.at(k));
             c.checked_sub(a).and_then(|c| c.checked_sub(b)).is_none_or(|c| {
                 let square = u128::from(c) * u128::from(c);
                 square.div_ceil(4) <= u128::from(a) * u128::from(b)
@@ -49,7 +50,7 @@ fn check(edges: &[u64], centres: Option<&[f64]>) -> Result<usize> {
         if centres.iter().any(|c| !c.is_finite()) {
             return Err(Error::NotFinite);
         }
-        if centres[0] < 0.0 || centres.windows(2).any(|pair| pair[0] >= pair[1]) {
+        if centres.first().is_some_and(|&c| c < 0.0) || centres.windows(2).any(|pair| pair[0] >= pair[1]) {
             return Err(Error::Table);
         }
     }

@@ -4,6 +4,7 @@ use super::triangles::{Triangle, check_triangles};
 use crate::estimate::exact::ExactSum;
 use crate::real::Real;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 fn check_finite(values: &[f64]) -> Result<()> {
     if values.iter().all(|&x| Real::is_finite(x)) { Ok(()) } else { Err(Error::NotFinite) }
@@ -72,7 +73,7 @@ fn combine(
         return Err(Error::Length);
     }
     check_finite(power)?;
-    let value = |t: usize| of(triangles[t].map(|shell| power[shell as usize]), t);
+    let value = |t: usize| of(triangles.at(t).map(|shell| power.at(shell as usize)), t);
     if (0..out.len()).any(|t| !Real::is_finite(value(t))) {
         return Err(Error::Range);
     }
@@ -108,6 +109,6 @@ pub fn reduced(out: &mut [f64], bispectrum: &[f64], triangles: &[Triangle], powe
     check_finite(bispectrum)?;
     combine(out, triangles, power, |[a, b, c], t| {
         let products = a * b + b * c + c * a;
-        if products == 0.0 { 0.0 } else { bispectrum[t] / products }
+        if products == 0.0 { 0.0 } else { bispectrum.at(t) / products }
     })
 }

@@ -6,6 +6,7 @@ use crate::mesh::Brick;
 use crate::pm::Window;
 use crate::scratch::{Arena, Layout};
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// How a derivative is taken on a mesh of spacing H = L/n; theta = k_a H on one axis, the Laplacian is the sum over the axes.
 ///
@@ -160,10 +161,10 @@ impl<'a> Tables<'a> {
         for m in 0..=n / 2 {
             let theta = 2.0 * PI * m as f64 / n as f64;
             // -m first: 0 and n/2 are their own mirrors, and keep the sign of +m.
-            for (i, sign) in [((n - m) % n, -1.0), (m, 1.0)] {
-                gradient[i] = sign * law.gradient.gradient(theta);
-                laplacian[i] = law.laplacian.laplacian(theta);
-                factor[i] = law.factor(theta, cells_per_length);
+            for (i, sign) in [(if m == 0 { 0 } else { n - m }, -1.0), (m, 1.0)] {
+                gradient.put(i, sign * law.gradient.gradient(theta));
+                laplacian.put(i, law.laplacian.laplacian(theta));
+                factor.put(i, law.factor(theta, cells_per_length));
             }
         }
         Ok(Self { n, gradient, laplacian, factor, spacing })

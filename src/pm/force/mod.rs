@@ -48,6 +48,7 @@ use crate::scratch::Layout;
 use crate::simd::Simd;
 use crate::status::{Error, Result};
 use crate::walk::{Run, walk};
+use crate::within::Within;
 
 mod law;
 
@@ -251,13 +252,13 @@ impl<'a> Row<'a> {
     fn new(tables: &Tables<'a>, run: &Run, scale: f64) -> Self {
         let [x, y, z] = run.index;
         let inside = tables.inside(run.index, run.length);
-        let along = [tables.gradient, tables.laplacian, tables.factor].map(|table| &table[z..z + inside]);
+        let along = [tables.gradient, tables.laplacian, tables.factor].map(|table| table.part(z..z + inside));
         Self {
             inside,
             mean: run.index == [0; 3] && inside > 0,
-            across: scale * (tables.factor[x] * tables.factor[y]),
-            laplacian: tables.laplacian[x] + tables.laplacian[y],
-            gradient: [tables.gradient[x], tables.gradient[y]],
+            across: scale * (tables.factor.at(x) * tables.factor.at(y)),
+            laplacian: tables.laplacian.at(x) + tables.laplacian.at(y),
+            gradient: [tables.gradient.at(x), tables.gradient.at(y)],
             along,
         }
     }
@@ -270,7 +271,7 @@ impl<'a> Row<'a> {
         for first in (0..self.inside).step_by(BLOCK) {
             let last = self.inside.min(first + BLOCK);
             for ((inverse, laplacian), factor) in
-                inverse.iter_mut().zip(&laplacian[first..last]).zip(&factor[first..last])
+                inverse.iter_mut().zip(laplacian.part(first..last)).zip(factor.part(first..last))
             {
                 *inverse = self.across * factor / (self.laplacian + laplacian);
             }
@@ -283,8 +284,10 @@ impl<'a> Row<'a> {
         let [gradient, ..] = self.along;
         self.blocks(|first, last, inverse| {
             let [x, y, z] = [&mut *x, &mut *y, &mut *z]
-                .map(|modes| modes[2 * first..2 * last].as_chunks_mut::<2>().0.iter_mut());
-            for ((((x, y), z), inverse), along) in x.zip(y).zip(z).zip(inverse).zip(&gradient[first..last]) {
+                .map(|modes| modes.part_mut(2 * first..2 * last).as_chunks_mut::<2>().0.iter_mut());
+            for ((((x, y), z), inverse), along) in
+                x.zip(y).zip(z).zip(inverse).zip(gradient.part(first..last))
+            {
                 let density = *x;
                 *x = turned(inverse * self.gradient[0], density);
                 *y = turned(inverse * self.gradient[1], density);
@@ -297,15 +300,15 @@ impl<'a> Row<'a> {
     fn force<T: Real>(&self, out: &mut [T], density: &[T], axis: usize) {
         let [gradient, ..] = self.along;
         self.blocks(|first, last, inverse| {
-            let out = out[2 * first..2 * last].as_chunks_mut::<2>().0.iter_mut();
-            let density = density[2 * first..2 * last].as_chunks::<2>().0;
-            if axis < 2 {
+            let out = out.part_mut(2 * first..2 * last).as_chunks_mut::<2>().0.iter_mut();
+            let density = density.part(2 * first..2 * last).as_chunks::<2>().0;
+            if let Some(gradient) = self.gradient.get(axis) {
                 for ((out, &density), inverse) in out.zip(density).zip(inverse) {
-                    *out = turned(inverse * self.gradient[axis], density);
+                    *out = turned(inverse * gradient, density);
                 }
             } else {
                 for (((out, &density), inverse), along) in
-                    out.zip(density).zip(inverse).zip(&gradient[first..last])
+                    out.zip(density).zip(inverse).zip(gradient.part(first..last))
                 {
                     *out = turned(inverse * along, density);
                 }
@@ -316,7 +319,8 @@ impl<'a> Row<'a> {
     #[inline(always)]
     fn potential<T: Real>(&self, modes: &mut [T]) {
         self.blocks(|first, last, inverse| {
-            for (mode, inverse) in modes[2 * first..2 * last].as_chunks_mut::<2>().0.iter_mut().zip(inverse) {
+            let modes = modes.part_mut(2 * first..2 * last).as_chunks_mut::<2>().0;
+            for (mode, inverse) in modes.iter_mut().zip(inverse) {
                 *mode = mode.map(|part| T::from_f64(-inverse * part.to_f64()));
             }
         });
@@ -324,9 +328,9 @@ impl<'a> Row<'a> {
 
     /// k = 0 and the Nyquist modes.
     fn drop_zero_modes<T: Real>(&self, modes: &mut [T]) {
-        modes[2 * self.inside..].fill(T::ZERO);
+        modes.part_mut(2 * self.inside..).fill(T::ZERO);
         if self.mean {
-            modes[..2].fill(T::ZERO);
+            modes.part_mut(..2).fill(T::ZERO);
         }
     }
 }
