@@ -127,12 +127,12 @@ impl<T: Real> Source for Separations<'_, T> {
 
     #[inline(always)]
     fn row(&self, spectrum: usize, _: [usize; 2], offset: usize, _: bool, products: &mut [f64]) {
-        let mesh = &self.meshes[spectrum][offset..];
+        let mesh = self.meshes.at(spectrum).part(offset..);
         if self.stride == 1 {
             products.iter_mut().zip(mesh).for_each(|(product, value)| *product = value.to_f64());
         } else {
             for (m, product) in products.iter_mut().enumerate() {
-                *product = mesh[m * self.stride].to_f64();
+                *product = mesh.at(m * self.stride).to_f64();
             }
         }
     }

@@ -169,7 +169,7 @@ impl<T: Real> Target<'_, T> {
         let mut block = Block::new();
         for records in records.chunks(BLOCK) {
             block.count = records.len();
-            for (i, record) in records.iter().enumerate() {
+            for (i, record) in records.iter().enumerate().take(BLOCK) {
                 for axis in 0..3 {
                     block.v[axis][i] = record[axis];
                 }

@@ -121,19 +121,19 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
         let mut values = [[T::ZERO; BLOCK]; M];
         for records in records.chunks_mut(BLOCK) {
             places.count = records.len();
-            for (i, record) in records.iter().enumerate() {
+            for (i, record) in records.iter().enumerate().take(BLOCK) {
                 for axis in 0..3 {
                     places.v[axis][i] = record[axis];
                 }
             }
             for axis in 0..3 {
                 let repeated = places.v[axis][0];
-                places.v[axis][records.len()..].fill(repeated);
+                places.v[axis].part_mut(records.len()..).fill(repeated);
                 self.frame.index_all(axis, &places.v[axis], &mut places.index[axis]);
             }
             // SAFETY: as the caller says.
             unsafe { self.read(&places, &mut values) };
-            for (i, record) in records.iter_mut().enumerate() {
+            for (i, record) in records.iter_mut().enumerate().take(BLOCK) {
                 for m in 0..M {
                     record[m] = values[m][i];
                 }
@@ -187,7 +187,7 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
         }
         let [x_step, y_step] = self.cells.steps();
         let mut sums = [[[T::ZERO; Q]; BLOCK]; M];
-        for i in 0..places.count {
+        for i in 0..places.count.min(BLOCK) {
             let later = start[(i + AHEAD) % BLOCK];
             for mesh in self.meshes {
                 let later = mesh.as_ptr().wrapping_add(later);

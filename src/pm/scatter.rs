@@ -4,6 +4,7 @@ use super::cells::{Cells, prefetch};
 use super::frame::BLOCK;
 use super::window::spline;
 use crate::real::Real;
+use crate::within::Within;
 
 /// Of so many particles, stretches are taken in turns. In lattice order particles follow each other from cell to cell, and a row that is read as a
 /// vector while its last sum, one cell off, is still on its way to the cache stops the processor for that long.
@@ -37,7 +38,7 @@ impl<T: Real> Block<T> {
         if self.count < BLOCK {
             for place in self.v.iter_mut().chain([&mut self.mass]) {
                 let first = place[0];
-                place[self.count..].fill(first);
+                place.part_mut(self.count..).fill(first);
             }
         }
     }
@@ -75,14 +76,15 @@ impl<T: Real> Block<T> {
             start[i] = cells.start(self.first(i)) | usize::from(over).wrapping_neg();
         }
         let steps = cells.steps();
-        let at = |turn: usize| if self.count == BLOCK { turn % TURNS * STRETCH + turn / TURNS } else { turn };
+        let count = self.count.min(BLOCK);
+        let at = |turn: usize| if count == BLOCK { turn % TURNS * STRETCH + turn / TURNS } else { turn };
         for turn in 0..BLOCK {
             let i = at(turn);
-            if i >= self.count {
+            if i >= count {
                 break;
             }
             if ahead {
-                let later = mesh.wrapping_add(start[at((turn + AHEAD) % BLOCK)]);
+                let later = mesh.wrapping_add(start.at(at((turn + AHEAD) % BLOCK)));
                 for row in 0..P * P {
                     prefetch::<T, true>(later.wrapping_add(row / P * steps[0] + row % P * steps[1]));
                 }

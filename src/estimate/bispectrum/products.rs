@@ -92,7 +92,8 @@ fn add_block<T: Real, const L: usize, const R: usize, const C: usize>(
     let middle = tile.vectors::<L>(tile.middle, block.middle);
     let rows: [_; R] = core::array::from_fn(|r| tile.vectors::<L>(tile.outer, block.rows[r]));
     let columns: [_; C] = core::array::from_fn(|c| tile.vectors::<L>(tile.outer, block.columns[c]));
-    let mut total: [[[T; L]; C]; R] = core::array::from_fn(|r| core::array::from_fn(|c| read(sums, r * C + c)));
+    let mut total: [[[T; L]; C]; R] =
+        core::array::from_fn(|r| core::array::from_fn(|c| read(sums, r * C + c)));
     for v in 0..middle.len() {
         let mut pair = [[T::ZERO; L]; R];
         for r in 0..R {
