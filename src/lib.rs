@@ -13,6 +13,8 @@ pub mod scratch;
 
 mod within;
 
+mod sort;
+
 pub mod real;
 
 pub mod math;
