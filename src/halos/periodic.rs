@@ -34,7 +34,7 @@ pub(super) fn home<T: Real>(x: T, box_size: f64) -> T {
 
 #[cold]
 fn fetch_home<T: Real>(x: T, box_size: f64) -> T {
-    let rest = libm::fmod(x.to_f64(), box_size);
+    let rest = crate::math::fmod(x.to_f64(), box_size);
     let rest = T::from_f64(if rest < 0.0 { rest + box_size } else { rest });
     // What rounds up to the far edge is on the near one.
     if rest.to_f64() < box_size { rest } else { T::ZERO }

@@ -284,7 +284,7 @@ pub(crate) fn wrap(x: f64, box_size: f64) -> f64 {
         return f64::NAN;
     }
     // The remainder is exact; a tiny negative one rounds up to the edge itself.
-    let rest = libm::fmod(x, box_size);
+    let rest = crate::math::fmod(x, box_size);
     let wrapped = if rest < 0.0 { rest + box_size } else { rest };
     if wrapped >= box_size { 0.0 } else { wrapped }
 }

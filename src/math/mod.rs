@@ -5,10 +5,12 @@
 //! arguments turns into vector instructions of whatever width the caller compiles for. Coefficients are minimax fits
 //! (Remez exchange in 50 digits, then rounded); the tests hold each function to its stated error.
 
+mod fmod;
 mod ln;
 mod sqrt;
 mod turns;
 
+pub use fmod::fmod;
 pub use ln::neg_ln;
 pub use sqrt::{sqrt, sqrt_in_place};
 pub use turns::sin_cos_turns;

@@ -156,3 +156,39 @@ fn sqrt_is_correctly_rounded() {
     sqrt_in_place(&mut x);
     assert_eq!(x, expected);
 }
+
+#[test]
+fn remainders_are_those_of_libm_bit_by_bit() {
+    let check = |x: f64, y: f64| {
+        let (ours, expected) = (fmod(x, y), libm::fmod(x, y));
+        let same = ours.to_bits() == expected.to_bits() || (ours.is_nan() && expected.is_nan());
+        assert!(same, "{x:e} modulo {y:e}: {ours:e} instead of {expected:e}");
+    };
+    let special =
+        [0.0, 5e-324, 2e-308, f64::MIN_POSITIVE, 0.1, 1.0, 1.5, 3.0, 1e300, f64::MAX, f64::INFINITY];
+    for x in special.into_iter().chain([f64::NAN]) {
+        for y in special.into_iter().chain([f64::NAN]) {
+            [(x, y), (-x, y), (x, -y), (-x, -y)].into_iter().for_each(|(x, y)| check(x, y));
+        }
+    }
+    let mut state = 1_u64;
+    let mut bits = || {
+        // The upper bits of two steps of a linear congruence.
+        let mut step = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state >> 32
+        };
+        step() << 32 | step()
+    };
+    for _ in 0..500_000 {
+        let (x, y) = (bits(), bits());
+        check(f64::from_bits(x), f64::from_bits(y));
+        // Near in size; subnormal; a subnormal divisor; whole multiples.
+        let near = f64::from_bits((x >> 1).wrapping_add(y >> 6) >> 1);
+        check(near, f64::from_bits(x >> 2));
+        check(f64::from_bits(x >> 12), f64::from_bits(y >> (12 + x % 52)));
+        check(f64::from_bits(x), f64::from_bits(y >> (12 + x % 52)));
+        let y = f64::from_bits(y >> 2);
+        check((x % 1000) as f64 * y, y);
+    }
+}

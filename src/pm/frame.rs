@@ -160,7 +160,7 @@ impl<T: Real> Frame<T> {
     /// v of a position boxes away: its remainder by L is exact.
     fn wrap(&self, x: T) -> T {
         let side = self.side.to_f64();
-        let v = libm::fmod(x.to_f64(), self.box_size) * self.cells_per_length;
+        let v = crate::math::fmod(x.to_f64(), self.box_size) * self.cells_per_length;
         // First into the box: the lift may take a place near its lower edge out again.
         let v = if v < 0.0 { v + side } else { v } + self.lift;
         let v = if v < 0.0 { v + side } else { v };
