@@ -2,8 +2,9 @@
 //!
 //! [`vectors`] computes named cases through the Rust interface. The programs of this folder compute the same cases through
 //! `fixpair.h` and compare, bit for bit; then they try every bad input that the header speaks of. [`native`] builds the
-//! libraries and the programs, [`programs`] runs them. [`pages`] compiles the code of a page.
+//! libraries and the programs, [`programs`] runs them, [`freestanding`] without a system. [`pages`] compiles the code of a page.
 
+mod freestanding;
 mod header;
 mod native;
 mod pages;

@@ -1,12 +1,10 @@
 //! Runs the programs. Each prints what does not hold and fails, and the test shows it.
 
-use std::collections::BTreeSet;
-use std::path::Path;
 use std::process::Command;
 
+use crate::freestanding::{declared, undefined};
 use crate::native::{
-    FREESTANDING, Language, SYSTEM, attempt, compiler, folder, program, root, run, shared_library,
-    shared_program, tool,
+    Language, SYSTEM, attempt, compiler, folder, program, root, run, shared_library, shared_program, tool,
 };
 use crate::vectors::VECTORS;
 
@@ -87,30 +85,9 @@ fn noise_of_ngenic_is_drawn_as_with_gsl() {
     run(&mut Command::new(program(Language::C, "gsl_noise.c", "gsl_noise", &options)));
 }
 
-/// Undefined symbols of an object or archive, without the underscore that some platforms put before them.
-fn undefined(file: &Path) -> BTreeSet<String> {
-    let output = run(Command::new("nm").arg("-u").arg(file));
-    let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    let symbols = text.lines().filter_map(|line| line.split_whitespace().last());
-    symbols.map(|symbol| symbol.trim_start_matches('_').to_owned()).collect()
-}
-
-/// The functions that the header declares.
-fn declared() -> BTreeSet<String> {
-    let header = std::fs::read_to_string(root().join("include/fixpair.h")).expect("the header");
-    let code = header.lines().filter(|line| !line.trim_start().starts_with(['*', '/', '#']));
-    let names = code.filter_map(|line| {
-        let (before, _) = line.split_once('(')?;
-        let name = before.rsplit([' ', '*']).next()?;
-        name.starts_with("fixpair_").then(|| name.to_owned())
-    });
-    names.collect()
-}
-
 #[test]
 fn the_c_programs_call_every_function() {
-    let declared = declared();
-    assert!(declared.len() > 50, "the header was read: {declared:?}");
+    let declared = declared(&[]);
     // These refuse nothing: any argument will do.
     let never = [
         "status_message",
@@ -152,37 +129,4 @@ fn sanitizers_find_nothing() {
         }
         run(&mut command);
     }
-}
-
-/// The library without std asks for nothing but copies of memory and arithmetic, and a program without a C library links it.
-#[test]
-#[cfg_attr(
-    not(all(target_os = "linux", target_arch = "x86_64")),
-    ignore = "its start and exit are those of Linux on x86-64"
-)]
-fn a_freestanding_program_links_it_without_malloc() {
-    let library = FREESTANDING.join("libfixpair.a");
-    let wanted = undefined(&library);
-    let forbidden =
-        ["malloc", "calloc", "realloc", "free", "posix_memalign", "aligned_alloc", "abort", "exit", "mmap"];
-    for symbol in &wanted {
-        assert!(
-            !forbidden.contains(&symbol.as_str()) && !symbol.starts_with("pthread"),
-            "the freestanding library needs {symbol}"
-        );
-    }
-    let program = folder().join("freestanding_program");
-    let mut compile = compiler(Language::C, "freestanding.c");
-    compile.args([
-        "-ffreestanding",
-        "-fno-builtin",
-        "-fno-stack-protector",
-        "-nostdlib",
-        "-static",
-        "-no-pie",
-    ]);
-    run(compile.arg(&library).arg("-o").arg(&program));
-    let left = undefined(&program);
-    assert!(left.is_empty(), "still undefined: {left:?}");
-    run(&mut Command::new(program));
 }
