@@ -42,7 +42,8 @@ impl<'a> Linear<'a> {
     /// `NotFinite`; `Range` if |n_s| > 10 or A is not a positive finite number.
     pub fn from_power(table: Table<'a>, n_s: f64) -> Result<Self> {
         check_tilt(n_s)?;
-        let amplitude = table.value()[0] / libm::pow(table.k()[0], n_s);
+        let (k, power) = table.first();
+        let amplitude = power / libm::pow(k, n_s);
         let table = table.with_slope_below(n_s)?;
         Self { shape: Shape::Power { table, amplitude }, n_s, amplitude }.with_amplitude(amplitude)
     }
@@ -53,7 +54,7 @@ impl<'a> Linear<'a> {
     /// As [`Linear::from_power`].
     pub fn from_transfer(table: Table<'a>, n_s: f64, amplitude: f64) -> Result<Self> {
         check_tilt(n_s)?;
-        let first = table.value()[0];
+        let (_, first) = table.first();
         let table = table.with_slope_below(0.0)?;
         Self { shape: Shape::Transfer { table, first }, n_s, amplitude }.with_amplitude(amplitude)
     }

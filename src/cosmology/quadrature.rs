@@ -5,6 +5,7 @@
 //! as tabulated in Piessens et al. 1983, QUADPACK). That estimate is far above the true error of a smooth integrand.
 
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// The most intervals that are kept (32 bytes each, on the stack).
 const INTERVALS: usize = 256;
@@ -88,12 +89,13 @@ pub fn integrate(mut f: impl FnMut(f64) -> f64, from: f64, to: f64, tolerance: f
     let mut intervals = [first; INTERVALS];
     let mut count = 1;
     loop {
-        let (mut value, mut error, mut worst) = (0.0, 0.0, 0);
-        for (i, interval) in intervals[..count].iter().enumerate() {
+        let (mut value, mut error) = (0.0, 0.0);
+        let (mut worst, mut largest) = (0, intervals[0].error);
+        for (i, interval) in intervals.iter().take(count).enumerate() {
             value += interval.value;
             error += interval.error;
-            if interval.error > intervals[worst].error {
-                worst = i;
+            if interval.error > largest {
+                (worst, largest) = (i, interval.error);
             }
         }
         if error <= tolerance * libm::fabs(value) {
@@ -102,10 +104,11 @@ pub fn integrate(mut f: impl FnMut(f64) -> f64, from: f64, to: f64, tolerance: f
         if count == INTERVALS {
             return Err(Error::Convergence);
         }
-        let Interval { from, to, .. } = intervals[worst];
+        let Some(halved) = intervals.get_mut(worst) else { return Err(Error::Convergence) };
+        let Interval { from, to, .. } = *halved;
         let middle = 0.5 * (from + to);
-        intervals[worst] = Interval::new(&mut f, from, middle)?;
-        intervals[count] = Interval::new(&mut f, middle, to)?;
+        *halved = Interval::new(&mut f, from, middle)?;
+        intervals.put(count, Interval::new(&mut f, middle, to)?);
         count += 1;
     }
 }

@@ -8,6 +8,7 @@
 //! or with one that the caller knows better ([`Table::with_slope_below`]).
 
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Rows (k, value), k in h/Mpc and strictly increasing, both positive.
 #[derive(Clone, Copy, Debug)]
@@ -71,8 +72,13 @@ impl<'a> Table<'a> {
         if value.is_finite() { Ok(value) } else { Err(Error::Range) }
     }
 
+    /// The first row.
+    pub(super) fn first(&self) -> (f64, f64) {
+        (self.k.at(0), self.value.at(0))
+    }
+
     fn ln_row(&self, i: usize) -> (f64, f64) {
-        (libm::log(self.k[i]), libm::log(self.value[i]))
+        (libm::log(self.k.at(i)), libm::log(self.value.at(i)))
     }
 
     /// Length in ln k and mean slope of the segment from row i to row i + 1.
@@ -159,8 +165,8 @@ impl<'a> Cursor<'a> {
         let row = above.saturating_sub(1);
         let (x0, y0) = table.ln_row(row);
         self.x0 = x0;
-        self.from = if above == 0 { 0.0 } else { table.k[row] };
-        self.to = if above > last { f64::INFINITY } else { table.k[above] };
+        self.from = if above == 0 { 0.0 } else { table.k.at(row) };
+        self.to = if above > last { f64::INFINITY } else { table.k.at(above) };
         self.c = if above == 0 {
             [y0, table.slope_below.unwrap_or_else(|| table.slope(0)), 0.0, 0.0]
         } else if above > last {

@@ -1,6 +1,7 @@
 //! One line of complex vectors through all passes of its plan.
 
 use core::marker::PhantomData;
+use core::num::NonZero;
 
 use super::access::{Access, Line};
 use super::butterfly::{Butterfly, Radix};
@@ -148,7 +149,7 @@ pub(super) unsafe fn transform<V: Lanes, I: Access<V>, O: Access<V>>(
     let mut roots = plan.roots.as_ptr();
     let (mut blocks, mut span) = (1, plan.length);
     for (i, &radix) in passes.iter().enumerate() {
-        let r = usize::from(radix);
+        let Some(r) = NonZero::new(usize::from(radix)) else { return };
         span /= r;
         // SAFETY: the plan's roots and reversal are those of its radices, whose product is its length.
         unsafe {
@@ -157,9 +158,9 @@ pub(super) unsafe fn transform<V: Lanes, I: Access<V>, O: Access<V>>(
             } else {
                 pass::<V, _, _>(radix, line, line, blocks, span, roots);
             }
-            roots = roots.add(2 * span * (r - 1));
+            roots = roots.add(2 * span * (r.get() - 1));
         }
-        blocks *= r;
+        blocks *= r.get();
     }
     // SAFETY: as above.
     unsafe {

@@ -10,6 +10,7 @@ use super::Fft3;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// (i, j, l), Re c, Im c. Taken modulo n, so that small meshes have waves on top of each other, which is as good.
 const WAVES: [([i64; 3], f64, f64); 7] = [
@@ -48,13 +49,13 @@ pub fn self_test<T: Real>(fft: &mut dyn Fft3<T>, data: &mut [T]) -> Result<()> {
     let waves = Waves::new(n);
     data.fill(T::from_f64(OUTSIDE));
     waves.visit_cells(&cells, |address, f| {
-        data[address] = T::from_f64(f);
+        data.put(address, T::from_f64(f));
         true
     });
     fft.forward(data)?;
     let good = waves.visit_modes(&modes, |address, f| {
         (0..2).all(|part| {
-            (data[address + part].to_f64() - f[part]).abs() <= waves.tolerance(T::EPSILON.to_f64())
+            (data.at(address + part).to_f64() - f[part]).abs() <= waves.tolerance(T::EPSILON.to_f64())
         })
     });
     if !good {
@@ -63,14 +64,14 @@ pub fn self_test<T: Real>(fft: &mut dyn Fft3<T>, data: &mut [T]) -> Result<()> {
 
     data.fill(T::from_f64(OUTSIDE));
     waves.visit_modes(&modes, |address, f| {
-        data[address] = T::from_f64(f[0]);
-        data[address + 1] = T::from_f64(f[1]);
+        data.put(address, T::from_f64(f[0]));
+        data.put(address + 1, T::from_f64(f[1]));
         true
     });
     fft.inverse(data)?;
     let cube = waves.cube;
     let good = waves.visit_cells(&cells, |address, f| {
-        (data[address].to_f64() - cube * f).abs() <= waves.tolerance(T::EPSILON.to_f64())
+        (data.at(address).to_f64() - cube * f).abs() <= waves.tolerance(T::EPSILON.to_f64())
     });
     if good { Ok(()) } else { Err(Error::Hook) }
 }
@@ -88,7 +89,8 @@ impl Waves {
         let modes = core::array::from_fn(|m| {
             let (k, re, im) = WAVES[m % WAVES.len()];
             let sign = if m < WAVES.len() { 1 } else { -1 };
-            (k.map(|k| (sign * k).rem_euclid(n as i64) as usize), [re, sign as f64 * im])
+            let index = |k: i64| (sign * k).checked_rem_euclid(n as i64).unwrap_or_default() as usize;
+            (k.map(index), [re, sign as f64 * im])
         });
         Self { n, cube: (n as f64) * (n as f64) * (n as f64), modes }
     }
@@ -100,7 +102,8 @@ impl Waves {
 
     /// exp(2 pi i turns/n).
     fn phase(&self, turns: usize) -> [f64; 2] {
-        let (s, c) = libm::sincos(core::f64::consts::TAU * ((turns % self.n) as f64 / self.n as f64));
+        let turns = turns.checked_rem(self.n).unwrap_or_default();
+        let (s, c) = libm::sincos(core::f64::consts::TAU * (turns as f64 / self.n as f64));
         [c, s]
     }
 

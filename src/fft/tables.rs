@@ -8,10 +8,13 @@
 //! Memory: a header of one cache line, then for n and for n/2 the roots and the reversal, then the untangling roots; each
 //! array begins on a cache line. The header makes built tables recognisable wherever they are viewed again.
 
+use core::num::NonZero;
+
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::scratch::{ALIGN, Arena, Layout};
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// "fixpFFT" and the version of the arrangement below.
 const MAGIC: u64 = u64::from_le_bytes(*b"fixpFFT\x01");
@@ -30,12 +33,12 @@ impl Radices {
     const EMPTY: Self = Self { list: [0; MOST_PASSES], count: 0 };
 
     fn push(&mut self, radix: u8) {
-        self.list[self.count] = radix;
+        self.list.put(self.count, radix);
         self.count += 1;
     }
 
     fn as_slice(&self) -> &[u8] {
-        &self.list[..self.count]
+        self.list.part(..self.count)
     }
 
     /// Radix 4 as often as possible (8 and 6 need more registers than there are, and save little), first; then what is
@@ -82,26 +85,30 @@ impl Radices {
         Ok(radices)
     }
 
+    /// All but the last.
+    fn first(&self) -> impl DoubleEndedIterator<Item = NonZero<usize>> {
+        self.list.iter().take(self.count - 1).filter_map(|&radix| NonZero::new(usize::from(radix)))
+    }
+
+    fn last(&self) -> NonZero<usize> {
+        NonZero::new(usize::from(self.list.at(self.count - 1))).unwrap_or(NonZero::<usize>::MIN)
+    }
+
     /// Complex roots in all passes but the last.
     fn roots(&self, length: usize) -> usize {
         let mut block = length;
         let mut total = 0;
-        for &radix in &self.as_slice()[..self.count - 1] {
-            let radix = usize::from(radix);
+        for radix in self.first() {
             block /= radix;
-            total += block * (radix - 1);
+            total += block * (radix.get() - 1);
         }
         total
-    }
-
-    fn last(&self) -> usize {
-        usize::from(self.list[self.count - 1])
     }
 }
 
 /// exp(-2 pi i k/n) for k < n, the angle reduced exactly to an eighth of a turn, rounded once.
 fn root(k: usize, n: usize) -> (f64, f64) {
-    let eighth = 8 * k / n;
+    let eighth = (8 * k).checked_div(n).unwrap_or_default();
     let rest = 8 * k - eighth * n;
     let rest = if eighth % 2 == 1 { n - rest } else { rest };
     let (s, c) = if rest == n {
@@ -147,10 +154,9 @@ impl<'a, T: Real> Plan<'a, T> {
         let roots = numbers_mut::<T>(arena, 2 * radices.roots(length))?;
         let mut next = roots.chunks_exact_mut(2);
         let mut block = length;
-        for &radix in &radices.as_slice()[..radices.count - 1] {
-            let radix = usize::from(radix);
+        for radix in radices.first() {
             let span = block / radix;
-            for (j, q) in (0..span).flat_map(|j| (1..radix).map(move |q| (j, q))) {
+            for (j, q) in (0..span).flat_map(|j| (1..radix.get()).map(move |q| (j, q))) {
                 let (re, im) = root(j * q, block);
                 if let Some(pair) = next.next() {
                     pair.copy_from_slice(&[T::from_f64(re), T::from_f64(im)]);
@@ -161,8 +167,7 @@ impl<'a, T: Real> Plan<'a, T> {
         let reversal = arena.take::<u32>(length / radices.last())?;
         for (b, place) in reversal.iter_mut().enumerate() {
             let (mut digits, mut reversed, mut weight) = (b, 0, reversal_weight(&radices));
-            for &radix in radices.as_slice()[..radices.count - 1].iter().rev() {
-                let radix = usize::from(radix);
+            for radix in radices.first().rev() {
                 weight /= radix;
                 reversed += digits % radix * weight;
                 digits /= radix;
@@ -189,14 +194,14 @@ impl<'a, T: Real> Plan<'a, T> {
 
 /// The product of all radices but the last: one more than the largest reversed number.
 fn reversal_weight(radices: &Radices) -> usize {
-    radices.as_slice()[..radices.count - 1].iter().map(|&radix| usize::from(radix)).product()
+    radices.first().map(NonZero::get).product()
 }
 
 /// The next `bytes` of `memory`, which goes on at the next cache line.
 fn cut<'a>(memory: &mut &'a [u8], bytes: usize) -> Result<&'a [u8]> {
     let (piece, rest) = memory.split_at_checked(bytes.next_multiple_of(ALIGN)).ok_or(Error::Scratch)?;
     *memory = rest;
-    Ok(&piece[..bytes])
+    piece.get(..bytes).ok_or(Error::Scratch)
 }
 
 fn numbers<'a, T: Real>(memory: &mut &'a [u8], count: usize) -> Result<&'a [T]> {

@@ -187,7 +187,7 @@ impl<'a, T: Real> Sweep<'a, T> {
         let n = self.tables.n();
         let (groups, blocks) = (n.div_ceil(V::COUNT), (n * (n / 2 + 1)).div_ceil(V::COUNT));
         let share = |items: usize, body: &(dyn Fn(usize, *mut T) + Sync)| {
-            let each = items.div_ceil(CHUNKS);
+            let each = items.div_ceil(CHUNKS).max(1);
             exec.parallel_for(items.div_ceil(each), &|chunk| {
                 // SAFETY: there are at most CHUNKS chunks, and each has a line, aligned to a cache line.
                 let work = unsafe { self.workspace.add(chunk * self.line) };

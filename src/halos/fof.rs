@@ -7,7 +7,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use super::friends::{BLOCK, Friends};
 use super::link::Cells;
-use super::periodic::{check_box, pieces, place, view};
+use super::periodic::{check_box, pieces, place, span, view};
 use super::sets::Sets;
 use super::sort::{Buckets, Record, Sizes, key, sort};
 use crate::exec::{Exec, Shared, for_each_piece};
@@ -16,6 +16,7 @@ use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// l = b L/N^(1/3), N the particles of the whole simulation.
 ///
@@ -101,23 +102,23 @@ pub fn fof_labels<T: Real>(
     let records = view::<Record>(shared, particles)?;
     sort(records, counters, labels, &sizes, Buckets::Ordered(friends.bound()), exec)?;
     let cells = collect(labels, starts, order, records, firsts, exec)?;
-    let (starts, parents) = (&starts[..=cells], &mut parents[..cells]);
+    let (starts, parents) = (starts.part(..=cells), parents.part_mut(..cells));
     let places = view::<[T; 3]>(shared, particles)?;
     for_each_piece(exec, places, CHUNK, &|chunk, piece| {
-        for (to, &i) in piece.iter_mut().zip(&order[chunk * CHUNK..]) {
+        for (to, &i) in piece.iter_mut().zip(order.part(chunk * CHUNK..)) {
             // SAFETY: the order is of particles that there are.
             *to = unsafe { place(position, i as usize, box_size) };
         }
     })?;
     let sets = Sets::new(parents);
-    Cells { friends: &friends, keys: &labels[..cells], starts, places, sets: &sets }.link(exec)?;
+    Cells { friends: &friends, keys: labels.part(..cells), starts, places, sets: &sets }.link(exec)?;
     let least = view::<u64>(shared, cells)?;
     least_ids(least, starts, order, ids, &sets, exec)?;
     let to = Shared::new(labels);
     exec.parallel_for(cells.div_ceil(CHUNK), &|chunk| {
         for cell in pieces(cells, CHUNK, chunk) {
-            let label = least[sets.parent(cell as u32) as usize];
-            for &i in &order[starts[cell] as usize..starts[cell + 1] as usize] {
+            let label = least.at(sets.parent(cell as u32) as usize);
+            for &i in order.part(span(starts, cell)) {
                 // SAFETY: each particle is in one cell.
                 unsafe { to.part(i as usize, 1)[0] = label };
             }
@@ -159,9 +160,9 @@ fn collect(
     exec: &dyn Exec,
 ) -> Result<usize> {
     let particles = records.len();
-    let begins = |i: usize| i == 0 || key(&records[i]) != key(&records[i - 1]);
+    let begins = |i: usize| i == 0 || key(&records.at(i)) != key(&records.at(i - 1));
     for_each_piece(exec, firsts, 1, &|chunk, first| {
-        first[0] = pieces(particles, CHUNK, chunk).map(|i| u32::from(begins(i))).sum();
+        first.fill(pieces(particles, CHUNK, chunk).map(|i| u32::from(begins(i))).sum());
     })?;
     let mut cells = 0;
     for first in firsts.iter_mut() {
@@ -169,20 +170,21 @@ fn collect(
     }
     let (to_keys, to_starts) = (Shared::new(keys), Shared::new(&mut *starts));
     for_each_piece(exec, order, CHUNK, &|chunk, order| {
-        let mut cell = firsts[chunk] as usize;
+        let mut cell = firsts.at(chunk) as usize;
         for (i, order) in pieces(particles, CHUNK, chunk).zip(order) {
-            *order = records[i][2];
+            let record = records.at(i);
+            *order = record[2];
             if begins(i) {
                 // SAFETY: cells are numbered in the order of records, so each is written by one chunk.
                 unsafe {
-                    to_keys.part(cell, 1)[0] = key(&records[i]);
+                    to_keys.part(cell, 1)[0] = key(&record);
                     to_starts.part(cell, 1)[0] = i as u32;
                 }
                 cell += 1;
             }
         }
     })?;
-    starts[cells as usize] = particles as u32;
+    starts.put(cells as usize, particles as u32);
     Ok(cells as usize)
 }
 
@@ -198,15 +200,15 @@ fn least_ids(
     for_each_piece(exec, least, CHUNK, &|chunk, least| {
         for (cell, least) in (chunk * CHUNK..).zip(least) {
             sets.flatten(cell as u32);
-            let members = &order[starts[cell] as usize..starts[cell + 1] as usize];
-            let id = |&i: &u32| ids.map_or(u64::from(i), |ids| ids[i as usize]);
+            let members = order.part(span(starts, cell));
+            let id = |&i: &u32| ids.map_or(u64::from(i), |ids| ids.at(i as usize));
             *least = members.iter().map(id).min().unwrap_or(u64::MAX);
         }
     })?;
     // A root comes before the other cells of its set.
     for cell in 0..least.len() {
         let root = sets.parent(cell as u32) as usize;
-        least[root] = least[root].min(least[cell]);
+        least.put(root, least.at(root).min(least.at(cell)));
     }
     Ok(())
 }

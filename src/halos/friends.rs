@@ -7,6 +7,7 @@ use super::periodic::home;
 use crate::pm::columns::Positions;
 use crate::real::Real;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Coordinates computed at a time.
 pub(super) const BLOCK: usize = 64;
@@ -133,6 +134,6 @@ impl Friends {
             let [x, y, z] = cell;
             all[i] = block << self.cell_bits | u64::from(((x << each) | y) << each | z);
         }
-        keys.copy_from_slice(&all[..keys.len()]);
+        keys.copy(all.part(..keys.len()));
     }
 }

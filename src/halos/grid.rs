@@ -9,6 +9,7 @@ use crate::pm::columns::Positions;
 use crate::real::Real;
 use crate::scratch::{Arena, Layout};
 use crate::status::Result;
+use crate::within::Within;
 
 /// Particles that one chunk handles.
 const CHUNK: usize = 1 << 14;
@@ -85,7 +86,7 @@ impl<'a, T: Real> Grid<'a, T> {
         let bound = (n * n * n) as u64;
         sort(records, counters, keys, &sizes, Buckets::Ordered(bound), exec)?;
         for_each_piece(exec, order, CHUNK, &|chunk, order| {
-            for (record, order) in records[pieces(particles, CHUNK, chunk)].iter().zip(order) {
+            for (record, order) in records.part(pieces(particles, CHUNK, chunk)).iter().zip(order) {
                 *order = record[2];
             }
         })?;
@@ -93,7 +94,7 @@ impl<'a, T: Real> Grid<'a, T> {
         list(starts, records, exec)?;
         let places = view::<[T; 3]>(shared, particles)?;
         for_each_piece(exec, places, CHUNK, &|chunk, piece| {
-            for (to, &i) in piece.iter_mut().zip(&order[chunk * CHUNK..]) {
+            for (to, &i) in piece.iter_mut().zip(order.part(chunk * CHUNK..)) {
                 // SAFETY: the order is of particles that there are.
                 *to = unsafe { place(positions, i as usize, box_size) };
             }
@@ -115,7 +116,8 @@ impl<'a, T: Real> Grid<'a, T> {
             if count >= n as f64 {
                 (0, n)
             } else {
-                ((first as i64).rem_euclid(n as i64) as usize, count as usize)
+                let first = (first as i64).checked_rem_euclid(n as i64).unwrap_or_default();
+                (first as usize, count as usize)
             }
         });
         let along = |(first, count): (usize, usize)| {
@@ -135,7 +137,8 @@ impl<'a, T: Real> Grid<'a, T> {
 
     #[inline(always)]
     fn list(&self, cells: Range<usize>, visit: &mut impl FnMut(&[[T; 3]])) {
-        visit(&self.places[self.starts[cells.start] as usize..self.starts[cells.end] as usize]);
+        let [first, end] = [cells.start, cells.end].map(|cell| self.starts.at(cell) as usize);
+        visit(self.places.part(first..end));
     }
 }
 
@@ -143,12 +146,12 @@ impl<'a, T: Real> Grid<'a, T> {
 fn list(starts: &mut [u32], records: &[Record], exec: &dyn Exec) -> Result<()> {
     let particles = records.len();
     // Cells up to this one have their start before record i.
-    let done = |i: usize| if i == 0 { 0 } else { key(&records[i - 1]) as usize + 1 };
-    starts[done(particles)..].fill(particles as u32);
+    let done = |i: usize| if i == 0 { 0 } else { key(&records.at(i - 1)) as usize + 1 };
+    starts.part_mut(done(particles)..).fill(particles as u32);
     let starts = Shared::new(starts);
     exec.parallel_for(particles.div_ceil(CHUNK), &|chunk| {
         for i in pieces(particles, CHUNK, chunk) {
-            let (first, cell) = (done(i), key(&records[i]) as usize);
+            let (first, cell) = (done(i), key(&records.at(i)) as usize);
             if first <= cell {
                 // SAFETY: keys increase, so each cell's start is written for one record only, and all are below the number of cells.
                 unsafe { starts.part(first, cell + 1 - first) }.fill(i as u32);

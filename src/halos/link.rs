@@ -7,11 +7,12 @@
 use core::ops::Range;
 
 use super::friends::Friends;
-use super::periodic::distance_squared;
+use super::periodic::{distance_squared, span};
 use super::sets::Sets;
 use crate::exec::Exec;
 use crate::real::Real;
 use crate::status::Result;
+use crate::within::Within;
 
 /// Cells that one chunk sweeps.
 const CHUNK: usize = 1 << 12;
@@ -49,7 +50,7 @@ impl<T: Real> Cells<'_, T> {
     }
 
     fn block_of(&self, cell: usize) -> u64 {
-        self.friends.block(self.keys[cell])
+        self.friends.block(self.keys.at(cell))
     }
 
     /// The first cell from `at` on that is in another block than the one before it.
@@ -115,7 +116,8 @@ impl<T: Real> Cells<'_, T> {
     /// Joins a block with those that follow it, over the edge of the box. In a small box a pair may be met twice.
     fn link_at_edge(&self, block: &Range<usize>, numbers: [u64; 3]) {
         let n = self.friends.blocks;
-        let step = |number: u64, by: i64| (number + n).wrapping_add_signed(by) % n;
+        let step =
+            |number: u64, by: i64| (number + n).wrapping_add_signed(by).checked_rem(n).unwrap_or_default();
         let meet = |dx, dy, dz| {
             let [x, y, z] = numbers;
             let other = self.friends.of_numbers([step(x, dx), step(y, dy), step(z, dz)]);
@@ -173,7 +175,7 @@ impl<T: Real> Cells<'_, T> {
     }
 
     fn places(&self, cell: usize) -> &[[T; 3]] {
-        &self.places[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+        self.places.part(span(self.starts, cell))
     }
 
     /// Is any particle of one cell a friend of any of the other?
@@ -215,7 +217,7 @@ struct Extent {
 
 impl Extent {
     fn of<T: Real>(places: &[[T; 3]]) -> Self {
-        let mut low = places[0];
+        let mut low = places.at(0);
         let mut high = low;
         for place in places {
             for axis in 0..3 {

@@ -1,9 +1,11 @@
 //! Particles by group: labels sorted, and the groups among them that are wanted.
 
+use super::periodic::span;
 use super::sort::{Buckets, Record, Sizes, key, sort};
 use crate::exec::{Exec, Shared, for_each_piece};
 use crate::scratch::{Arena, Layout};
 use crate::status::Result;
+use crate::within::Within;
 
 /// 12 bytes a particle, and counters.
 pub(super) fn layout(particles: usize) -> Result<Layout> {
@@ -35,10 +37,10 @@ impl<'a> Members<'a> {
         let counters = sizes.counters_of(&mut arena)?;
         let firsts = arena.take::<u32>(sizes.buckets + 1)?;
         let starts = sort(records, counters, labels, &sizes, Buckets::Hashed, exec)?;
-        firsts[sizes.buckets] = 0;
+        firsts.put(sizes.buckets, 0);
         let mut members = Self { records, starts, firsts: &[], keep };
-        for_each_piece(exec, &mut firsts[..sizes.buckets], 1, &|bucket, first| {
-            first[0] = members.of_bucket(bucket).count() as u32;
+        for_each_piece(exec, firsts.part_mut(..sizes.buckets), 1, &|bucket, first| {
+            first.fill(members.of_bucket(bucket).count() as u32);
         })?;
         let mut groups = 0;
         for first in firsts.iter_mut() {
@@ -50,13 +52,19 @@ impl<'a> Members<'a> {
 
     /// Groups that are wanted.
     pub(super) fn groups(&self) -> usize {
-        self.firsts[self.firsts.len() - 1] as usize
+        self.firsts.last().map_or(0, |&groups| groups as usize)
     }
 
     /// The wanted groups of a bucket: labels and records.
     fn of_bucket(&self, bucket: usize) -> impl Iterator<Item = (u64, &[Record])> {
-        let records = &self.records[self.starts[bucket] as usize..self.starts[bucket + 1] as usize];
-        let groups = records.chunk_by(|a, b| key(a) == key(b)).map(|records| (key(&records[0]), records));
+        let mut rest = self.records.part(span(self.starts, bucket));
+        let groups = core::iter::from_fn(move || {
+            let label = key(rest.first()?);
+            let members = rest.iter().take_while(|record| key(record) == label).count();
+            let (group, others) = rest.split_at_checked(members)?;
+            rest = others;
+            Some((label, group))
+        });
         groups.filter(|(label, records)| (self.keep)(*label, records.len() as u64))
     }
 
@@ -70,7 +78,7 @@ impl<'a> Members<'a> {
         debug_assert_eq!(to.len(), self.groups());
         let to = Shared::new(to);
         exec.parallel_for(self.starts.len() - 1, &|bucket| {
-            for (group, (label, records)) in (self.firsts[bucket] as usize..).zip(self.of_bucket(bucket)) {
+            for (group, (label, records)) in (self.firsts.at(bucket) as usize..).zip(self.of_bucket(bucket)) {
                 // SAFETY: groups were counted by bucket, so each place is written once.
                 unsafe { to.part(group, 1)[0] = make(label, records) };
             }

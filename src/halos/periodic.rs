@@ -7,6 +7,7 @@ use crate::pm::columns::Positions;
 use crate::real::Real;
 use crate::scratch::{Arena, Layout, Plain};
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// The sides that are taken: squares of lengths in them neither vanish nor overflow.
 const SMALLEST: f64 = 1e-100;
@@ -81,6 +82,12 @@ pub(super) fn difference(a: f64, b: f64, box_size: f64) -> f64 {
 pub(super) fn pieces(total: usize, length: usize, i: usize) -> core::ops::Range<usize> {
     let first = i * length;
     first..total.min(first + length)
+}
+
+/// Part number i of a list whose parts start at `starts`, the last of which is the end.
+#[inline(always)]
+pub(super) fn span(starts: &[u32], i: usize) -> core::ops::Range<usize> {
+    starts.at(i) as usize..starts.at(i + 1) as usize
 }
 
 /// Are all coordinates finite?

@@ -9,6 +9,7 @@ use crate::exec::{Exec, Shared};
 use crate::pm::columns::Positions;
 use crate::real::Real;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// How spheres shrink.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +63,7 @@ pub fn refine_centres<T: Real>(
         // SAFETY: one centre a chunk, and as many radii as centres.
         let centre = unsafe { &mut centres.part(i, 1)[0] };
         let mut place = centre.map(|x| home(x, box_size));
-        let mut radius = radii[i].min(0.25 * box_size);
+        let mut radius = radii.at(i).min(0.25 * box_size);
         loop {
             let (count, sum) = centre_of_mass(&grid, place, radius, box_size);
             if count < n_min {

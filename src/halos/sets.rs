@@ -22,7 +22,14 @@ impl<'a> Sets<'a> {
     /// A number nearer to the root, or the root. No order between threads is needed: a parent read late is still of the same set.
     #[inline(always)]
     pub(super) fn parent(&self, i: u32) -> u32 {
-        self.parent[i as usize].load(Ordering::Relaxed)
+        self.parent.get(i as usize).map_or(i, |parent| parent.load(Ordering::Relaxed))
+    }
+
+    #[inline(always)]
+    fn set_parent(&self, i: u32, to: u32) {
+        if let Some(parent) = self.parent.get(i as usize) {
+            parent.store(to, Ordering::Relaxed);
+        }
     }
 
     /// The root, and shortens the way to it.
@@ -36,7 +43,7 @@ impl<'a> Sets<'a> {
             let next = self.parent(parent);
             if next != parent {
                 // Only roots change by exchange, and this is none: any value stored here is one of its set below it.
-                self.parent[i as usize].store(next, Ordering::Relaxed);
+                self.set_parent(i, next);
             }
             i = next;
         }
@@ -52,9 +59,8 @@ impl<'a> Sets<'a> {
                 return;
             }
             let (low, high) = (a.min(b), a.max(b));
-            let swap =
-                self.parent[high as usize].compare_exchange(high, low, Ordering::Relaxed, Ordering::Relaxed);
-            if swap.is_ok() {
+            let Some(parent) = self.parent.get(high as usize) else { return };
+            if parent.compare_exchange(high, low, Ordering::Relaxed, Ordering::Relaxed).is_ok() {
                 return;
             }
         }
@@ -68,7 +74,7 @@ impl<'a> Sets<'a> {
         while self.parent(root) != root {
             root = self.parent(root);
         }
-        self.parent[i as usize].store(root, Ordering::Relaxed);
+        self.set_parent(i, root);
     }
 }
 

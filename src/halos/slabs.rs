@@ -8,7 +8,9 @@
 //! A link over a border is found if one of the two processes has a copy of the other's particle, so ghosts of one side of each border suffice.
 
 use crate::exec::{Exec, for_each_piece};
+use crate::sort::sort_by_key;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Works out the final label of each label that occurs in `pairs` of labels of one group, in any order and repeated at will.
 ///
@@ -19,48 +21,53 @@ use crate::status::{Error, Result};
 ///
 /// Cost: a sort of all labels and two searches a pair. No scratch.
 pub fn fof_merge(map: &mut [[u64; 2]], pairs: &[[u64; 2]]) -> Result<usize> {
-    if map.len() / 2 < pairs.len() {
-        return Err(Error::Length);
-    }
-    let all = &mut map[..2 * pairs.len()];
+    let all = map.get_mut(..2 * pairs.len()).ok_or(Error::Length)?;
     for (to, label) in all.iter_mut().zip(pairs.as_flattened()) {
         *to = [*label, 0];
     }
-    all.sort_unstable();
+    sort_by_key(all, |entry| entry[0]);
     let mut labels = 0;
     for i in 0..all.len() {
-        if i == 0 || all[i][0] != all[labels - 1][0] {
-            all[labels] = [all[i][0], labels as u64];
+        let [label, _] = all.at(i);
+        if i == 0 || label != all.at(labels - 1)[0] {
+            all.put(labels, [label, labels as u64]);
             labels += 1;
         }
     }
-    let sets = &mut all[..labels];
+    let sets = all.part_mut(..labels);
     // Second numbers are places in the list, of a label of the same group that is not larger.
     fn root(sets: &mut [[u64; 2]], mut i: usize) -> usize {
-        while sets[i][1] != i as u64 {
-            let next = sets[sets[i][1] as usize][1];
-            sets[i][1] = next;
+        loop {
+            let [label, parent] = sets.at(i);
+            if parent == i as u64 {
+                return i;
+            }
+            let [_, next] = sets.at(parent as usize);
+            sets.put(i, [label, next]);
             i = next as usize;
         }
-        i
     }
     for pair in pairs {
         let [a, b] = pair.map(|label| sets.partition_point(|entry| entry[0] < label));
         let (a, b) = (root(sets, a), root(sets, b));
-        sets[a.max(b)][1] = a.min(b) as u64;
+        if let Some([_, parent]) = sets.get_mut(a.max(b)) {
+            *parent = a.min(b) as u64;
+        }
     }
     for i in 0..labels {
-        sets[i][1] = root(sets, i) as u64;
+        let root = root(sets, i) as u64;
+        sets.put(i, [sets.at(i)[0], root]);
     }
     for i in 0..labels {
-        sets[i][1] = sets[sets[i][1] as usize][0];
+        let [label, root] = sets.at(i);
+        sets.put(i, [label, sets.at(root as usize)[0]]);
     }
     Ok(labels)
 }
 
 /// The final label of a label that the map holds.
 pub(super) fn final_label(map: &[[u64; 2]], label: u64) -> Option<u64> {
-    map.binary_search_by_key(&label, |entry| entry[0]).ok().map(|at| map[at][1])
+    map.binary_search_by_key(&label, |entry| entry[0]).ok().map(|at| map.at(at)[1])
 }
 
 /// `Table` unless labels increase.

@@ -2,10 +2,12 @@
 
 use core::cmp::Reverse;
 
-use super::periodic::pieces;
+use super::periodic::{pieces, span};
 use crate::exec::{Exec, Shared};
 use crate::scratch::Layout;
+use crate::sort::sort_by_key;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Key, high half first, and number of a particle.
 pub(super) type Record = [u32; 3];
@@ -51,7 +53,7 @@ impl Sizes {
     }
 
     fn chunks(&self) -> usize {
-        self.particles.div_ceil(self.chunk)
+        self.particles.div_ceil(self.chunk.max(1))
     }
 
     fn counters(&self) -> usize {
@@ -80,12 +82,14 @@ pub(super) fn sort<'a>(
     exec: &dyn Exec,
 ) -> Result<&'a [u32]> {
     let Sizes { particles, buckets, chunk } = *sizes;
-    let (starts, counters) = counters.split_at_mut(buckets + 1);
+    let (starts, counters) = counters.split_at_mut_checked(buckets + 1).ok_or(Error::Scratch)?;
     let bucket = Bucket::new(by, buckets);
     crate::exec::for_each_piece(exec, counters, buckets, &|i, counters| {
         counters.fill(0);
-        for &key in &keys[pieces(particles, chunk, i)] {
-            counters[bucket.of(key)] += 1;
+        for &key in keys.part(pieces(particles, chunk, i)) {
+            if let Some(counter) = counters.get_mut(bucket.of(key)) {
+                *counter += 1;
+            }
         }
     })?;
     sum(counters, starts);
@@ -94,9 +98,9 @@ pub(super) fn sort<'a>(
         exec.parallel_for(sizes.chunks(), &|i| {
             // SAFETY: a row of counters a chunk.
             let places = unsafe { counters.part(i * buckets, buckets) };
-            for i in pieces(particles, chunk, i) {
-                let key = keys[i];
-                let place = &mut places[bucket.of(key)];
+            let piece = pieces(particles, chunk, i);
+            for (i, &key) in piece.clone().zip(keys.part(piece)) {
+                let Some(place) = places.get_mut(bucket.of(key)) else { continue };
                 // SAFETY: the first pass counted this particle for this bucket and chunk, so the place is its own.
                 unsafe { records.part(*place as usize, 1)[0] = [(key >> 32) as u32, key as u32, i as u32] };
                 *place += 1;
@@ -106,10 +110,11 @@ pub(super) fn sort<'a>(
     let starts = &*starts;
     let records = Shared::new(records);
     exec.parallel_for(buckets, &|b| {
-        let (start, end) = (starts[b] as usize, starts[b + 1] as usize);
+        let bucket = span(starts, b);
         // SAFETY: buckets are disjoint, and each is sorted once.
-        let bucket = unsafe { records.part(start, end - start) };
-        bucket.sort_unstable_by_key(|record| (key(record), record[2]));
+        let bucket = unsafe { records.part(bucket.start, bucket.len()) };
+        // One number is compared sooner than two.
+        sort_by_key(bucket, |record| u128::from(key(record)) << 32 | u128::from(record[2]));
     })?;
     Ok(starts)
 }
@@ -144,17 +149,17 @@ fn sum(counters: &mut [u32], starts: &mut [u32]) {
     let buckets = starts.len() - 1;
     let mut place = 0;
     for bucket in 0..buckets {
-        starts[bucket] = place;
+        starts.put(bucket, place);
         for counter in counters.iter_mut().skip(bucket).step_by(buckets) {
             place += core::mem::replace(counter, place);
         }
     }
-    starts[buckets] = place;
+    starts.put(buckets, place);
 }
 
 /// In place, by decreasing first and then increasing second number, which together are different for all values.
-pub(super) fn sort_by_size<T>(values: &mut [T], numbers: impl Fn(&T) -> (u64, u64)) {
-    values.sort_unstable_by_key(|value| {
+pub(super) fn sort_by_size<T: Copy + Default>(values: &mut [T], numbers: impl Fn(&T) -> (u64, u64)) {
+    sort_by_key(values, |value| {
         let (size, label) = numbers(value);
         (Reverse(size), label)
     });

@@ -17,6 +17,7 @@ use crate::pm::columns::Positions;
 use crate::real::Real;
 use crate::scratch::Layout;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// What lies around a centre above a density. All zero if the centre is not that dense.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -101,7 +102,7 @@ pub fn spheres<T: Real>(
     for_each_piece(exec, spheres, each, &|i, spheres| {
         for (sphere, &delta) in spheres.iter_mut().zip(overdensities) {
             let radius = |k| radius(k, delta, box_size, particles_total);
-            let centre = centres[i].map(|x| super::periodic::home(x, box_size));
+            let centre = centres.at(i).map(|x| super::periodic::home(x, box_size));
             let members = grow(n_min, |k| count(&grid, centre, radius(k), box_size));
             *sphere = members.map_or_else(Sphere::default, |members| Sphere {
                 members,

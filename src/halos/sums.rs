@@ -10,7 +10,9 @@ use super::sort::Record;
 use crate::exec::Exec;
 use crate::pm::columns::Positions;
 use crate::real::Real;
+use crate::sort::sort_by_key;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Sums over particles of one group.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -61,7 +63,8 @@ impl HaloSums {
                 )
             }
         };
-        let (reference, reference_velocity) = read(&records[0]);
+        let Some(first) = records.first() else { return Self::default() };
+        let (reference, reference_velocity) = read(first);
         let mut sums =
             Self { label, members: records.len() as u64, reference, reference_velocity, ..Self::default() };
         for record in records {
@@ -183,7 +186,7 @@ pub fn halo_sums<T: Real>(
         let label = final_label(map, label).unwrap_or(label);
         HaloSums::of(label, records, position, velocity, box_size)
     })?;
-    sums.sort_unstable_by_key(|sums| sums.label);
+    sort_by_key(sums, |sums| sums.label);
     Ok(groups)
 }
 
@@ -197,15 +200,16 @@ pub fn halo_sums<T: Real>(
 pub fn halo_sums_merge(sums: &mut [HaloSums], box_size: f64) -> Result<usize> {
     check_sums(sums, box_size)?;
     sums.iter().try_fold(0_u64, |total, one| total.checked_add(one.members)).ok_or(Error::Overflow)?;
-    sums.sort_unstable_by_key(HaloSums::key);
+    sort_by_key(sums, HaloSums::key);
     let mut groups = 0;
     for i in 0..sums.len() {
-        let one = sums[i];
-        if groups > 0 && sums[groups - 1].label == one.label {
-            sums[groups - 1].add(&one, box_size);
-        } else {
-            sums[groups] = one;
-            groups += 1;
+        let one = sums.at(i);
+        match sums.part_mut(..groups).last_mut() {
+            Some(last) if last.label == one.label => last.add(&one, box_size),
+            _ => {
+                sums.put(groups, one);
+                groups += 1;
+            }
         }
     }
     Ok(groups)

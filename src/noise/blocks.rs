@@ -6,6 +6,7 @@ use super::philox::{key_of, rounds};
 use super::realisation::{Amplitude, Phase, Realisation};
 use crate::math::{neg_ln, sin_cos_turns, sqrt, sqrt_in_place};
 use crate::real::Real;
+use crate::within::Within;
 
 /// Modes in a block: a few vector iterations of each stage, handed over in the first-level cache; more would be
 /// wasted at the end of short rows.
@@ -148,7 +149,7 @@ impl Draw {
         if let Some(colour) = colour {
             for (lane, mode) in out.iter_mut().enumerate() {
                 let l = first as usize + lane;
-                *mode = [re[lane], im[lane]].map(|x| T::from_f64(x * colour[l * l]));
+                *mode = [re[lane], im[lane]].map(|x| T::from_f64(x * colour.at(l * l)));
             }
         } else {
             for (lane, mode) in out.iter_mut().enumerate() {

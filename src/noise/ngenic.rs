@@ -12,6 +12,7 @@ use crate::mesh::Brick;
 use crate::real::Real;
 use crate::simd::Simd;
 use crate::status::Result;
+use crate::within::Within;
 
 /// Columns that are drawn together.
 pub(super) const LANES: usize = 8;
@@ -36,7 +37,8 @@ pub(super) fn draw<T: Real>(
     // Columns that are drawn together lie near each other.
     let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
     let inner = usize::from(count[0] == 1 || count[1] > 1 && stride[1] <= stride[0]);
-    let groups = count[inner].div_ceil(LANES);
+    let (along, across) = (count[inner], count[1 - inner]);
+    let groups = along.div_ceil(LANES).max(1);
     let columns = Columns {
         n: brick.n(),
         first: start[2],
@@ -48,18 +50,17 @@ pub(super) fn draw<T: Real>(
         shape: Shape::new(realisation),
         colour,
     };
-    exec.parallel_for(groups * count[1 - inner], &|chunk| {
+    exec.parallel_for(groups * across, &|chunk| {
         let (outer, group) = (chunk / groups, chunk % groups);
         let begin = group * LANES;
         let column = |lane: usize| {
-            let mut local = [outer; 2];
-            local[inner] = begin + lane;
+            let local = if inner == 0 { [begin + lane, outer] } else { [outer, begin + lane] };
             columns.column(
                 [start[0] + local[0], start[1] + local[1]],
                 local[0] * stride[0] + local[1] * stride[1],
             )
         };
-        let length = LANES.min(count[inner] - begin);
+        let length = LANES.min(along - begin);
         // Lanes to spare draw the last column once more, for nobody.
         let group: [Column; LANES] = core::array::from_fn(|lane| column(lane.min(length - 1)));
         simd.vectorise(
@@ -139,14 +140,14 @@ impl<T: Real> Columns<'_, T> {
     /// Writes the unit mode l.
     #[inline(always)]
     fn put(&self, column: &Column, l: usize, unit: [f64; 2]) {
-        let factor = self.colour.map_or(1.0, |table| table[column.square + l * l]);
+        let factor = self.colour.map_or(1.0, |table| table.at(column.square + l * l));
         self.set(column, l, unit.map(|x| T::from_f64(x * factor)));
     }
 
     /// All modes of a group of columns, of which the first `length` are written.
     #[inline(always)]
     fn fill(&self, group: &[Column; LANES], length: usize) {
-        let columns = &group[..length];
+        let columns = group.part(..length);
         let last = columns.iter().map(|column| column.drawn).max().unwrap_or(0);
         let mut streams = Streams::new(group.map(|column| column.seeds[0]));
         for l in (0..last).step_by(MODES) {
@@ -159,7 +160,7 @@ impl<T: Real> Columns<'_, T> {
             for (lane, column) in columns.iter().enumerate() {
                 for l_here in from..column.drawn.min(l + MODES) {
                     let at = (l_here - l) * LANES + lane;
-                    self.put(column, l_here, [re[at], im[at]]);
+                    self.put(column, l_here, [re.at(at), im.at(at)]);
                 }
             }
         }
@@ -187,7 +188,7 @@ impl<T: Real> Columns<'_, T> {
                 for (lane, column) in columns.iter().enumerate() {
                     if column.mirrored && held(column) {
                         let at = plane % MODES * LANES + lane;
-                        let [re, im] = self.shape.complex(u1[at], u2[at]);
+                        let [re, im] = self.shape.complex(u1.at(at), u2.at(at));
                         self.put(column, plane, [re, -im]);
                     }
                 }

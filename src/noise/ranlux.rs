@@ -7,6 +7,8 @@
 //!
 //! The state is turned after each use so that its oldest word stands first: all indices are known to the compiler.
 
+use crate::within::Within;
+
 const WORDS: usize = 12;
 /// Updates between two dozens of numbers: the luxury level.
 const UPDATES: usize = 202;
@@ -155,8 +157,9 @@ impl Ranlxd1 {
             self.state.dozen();
             self.used = 0;
         }
+        let [word] = self.state.words.at(self.used);
         self.used += 1;
-        self.state.words[self.used - 1][0]
+        word
     }
 
     /// u1 and u2 of a mode, times 2^48: the second is drawn again while it is zero.

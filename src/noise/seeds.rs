@@ -5,6 +5,7 @@ use super::ranlux::Ranlxd1;
 use crate::mesh::{Brick, Space};
 use crate::real::Real;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// The entries of the n x n table in the order in which they are drawn.
 ///
@@ -51,7 +52,7 @@ pub fn ngenic_seeds(seeds: &mut [u32], brick: &Brick, seed: u64) -> Result<()> {
     let row = brick.count()[1];
     for_each(brick.n(), seed, |column, entry| {
         if let Some([i, j]) = local(brick, column) {
-            seeds[i * row + j] = entry;
+            seeds.put(i * row + j, entry);
         }
     });
     Ok(())
@@ -102,8 +103,8 @@ impl Slots {
         let stride = brick.stride();
         let mut put = |[i, j]: [usize; 2], slot: usize, entry: u32| {
             let at = 2 * (i * stride[0] + j * stride[1] + slot * stride[2]);
-            out[at] = T::from_f64(f64::from(entry & ((1 << LOW) - 1)));
-            out[at + 1] = T::from_f64(f64::from(entry >> LOW));
+            out.put(at, T::from_f64(f64::from(entry & ((1 << LOW) - 1))));
+            out.put(at + 1, T::from_f64(f64::from(entry >> LOW)));
         };
         for_each(n, seed, |column, entry| {
             // A brick of one plane has room for one seed, and needs but one.

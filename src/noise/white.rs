@@ -9,6 +9,7 @@ use crate::real::Real;
 use crate::simd::Simd;
 use crate::status::{Error, Result};
 use crate::walk;
+use crate::within::Within;
 
 /// Runs shorter than this are drawn mode by mode.
 const SHORT: usize = 4;
@@ -138,7 +139,7 @@ impl Row<'_> {
         let begin = usize::from(first == 0).min(out.len());
         let end = out.len().min(half - first.min(half)).max(begin);
         let (before, rest) = out.split_at_mut(begin);
-        let (inner, after) = rest.split_at_mut(end - begin);
+        let (inner, after) = rest.split_at_mut_checked(end - begin).unwrap_or_default();
         for (mode, l) in before.iter_mut().zip(first..).chain(after.iter_mut().zip(first + end..)) {
             *mode = self.single(l as u32);
         }
@@ -149,7 +150,7 @@ impl Row<'_> {
             }
             return;
         }
-        let colour = self.colour.map(|table| &table[self.square()..]);
+        let colour = self.colour.map(|table| table.part(self.square()..));
         match simd {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: `Simd::Avx2` exists only where the processor has AVX2.
@@ -183,7 +184,7 @@ impl Row<'_> {
         };
         let l = l as usize;
         match self.colour {
-            Some(table) => unit.map(|x| T::from_f64(x * table[self.square() + l * l])),
+            Some(table) => unit.map(|x| T::from_f64(x * table.at(self.square() + l * l))),
             None => unit.map(T::from_f64),
         }
     }

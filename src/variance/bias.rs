@@ -11,6 +11,7 @@
 use super::check::{fill, fill_two, finite, positive, result, same_length};
 use crate::math::sqrt;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Overdensity of spherical collapse.
 pub const DELTA_C: f64 = 1.686;
@@ -65,7 +66,7 @@ pub fn bias_of_k(out: &mut [f64], parameters: &Bias, alpha: &[f64]) -> Result<()
     same_length(out.len(), &[alpha.len()])?;
     parameters.check()?;
     positive(alpha)?;
-    fill(out, |i| result(parameters.b_g + parameters.shift() / alpha[i]))
+    fill(out, |i| result(parameters.b_g + parameters.shift() / alpha.at(i)))
 }
 
 /// b^2 P_lin or b P_lin.
@@ -84,10 +85,10 @@ pub fn halo_power(
     positive(alpha)?;
     finite(linear)?;
     fill(out, |i| {
-        let bias = parameters.b_g + parameters.shift() / alpha[i];
+        let bias = parameters.b_g + parameters.shift() / alpha.at(i);
         result(match spectrum {
-            Spectrum::HaloHalo => bias * bias * linear[i],
-            Spectrum::HaloMatter => bias * linear[i],
+            Spectrum::HaloHalo => bias * bias * linear.at(i),
+            Spectrum::HaloMatter => bias * linear.at(i),
         })
     })
 }
@@ -110,7 +111,7 @@ pub fn measured_bias(
     positive(sigma)?;
     positive(linear)?;
     fill_two(out, error, |i| {
-        let (ratio, sigma) = (result(power[i] / linear[i])?, result(sigma[i] / linear[i])?);
+        let (ratio, sigma) = (result(power.at(i) / linear.at(i))?, result(sigma.at(i) / linear.at(i))?);
         match spectrum {
             Spectrum::HaloHalo if ratio > 0.0 => {
                 let bias = sqrt(ratio);

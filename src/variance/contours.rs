@@ -2,6 +2,7 @@
 
 use super::check::{finite, same_length};
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// The line of one level, as straight segments (x0, y0, x1, y1) in the grid's values, each with higher values to the same side.
 ///
@@ -58,11 +59,13 @@ fn each_segment(values: &[f64], points: [usize; 2], level: f64, mut visit: impl 
         for j in 0..points[1] - 1 {
             // Corners counterclockwise from (i, j), x to the right and y up.
             let corners = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
-            let height = corners.map(|[x, y]| values[x * points[1] + y] - level);
+            let height = corners.map(|[x, y]| values.at(x * points[1] + y) - level);
             let above = height.map(|h| h >= 0.0);
+            let rises = |e: usize| !above[e % 4] && above[(e + 1) % 4];
+            let falls = |e: usize| above[e % 4] && !above[(e + 1) % 4];
             // Where edge e, from corner e to the next, is crossed.
             let cross = |e: usize| -> [f64; 2] {
-                let (a, b) = (e, (e + 1) % 4);
+                let (a, b) = (e % 4, (e + 1) % 4);
                 // From the lower corner, so that both cells of an edge get the same bits.
                 let (low, high) = if corners[a] <= corners[b] { (a, b) } else { (b, a) };
                 let t = height[low] / (height[low] - height[high]);
@@ -74,9 +77,8 @@ fn each_segment(values: &[f64], points: [usize; 2], level: f64, mut visit: impl 
             let centre = height.iter().sum::<f64>() >= 0.0;
             let saddle = above[0] == above[2] && above[1] == above[3] && above[0] != above[1];
             // A segment enters where the walk about the cell goes up, and leaves where it goes down next.
-            for up in (0..4).filter(|&e| !above[e] && above[(e + 1) % 4]) {
-                let downs =
-                    || (1..4).map(|step| (up + step) % 4).filter(|&e| above[e] && !above[(e + 1) % 4]);
+            for up in (0..4).filter(|&e| rises(e)) {
+                let downs = || (1..4).map(|step| (up + step) % 4).filter(|&e| falls(e));
                 // Of a saddle with high ground in the middle, low corners are cut off.
                 let down = if saddle && centre { downs().next_back() } else { downs().next() };
                 if let Some(down) = down {

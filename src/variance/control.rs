@@ -8,6 +8,7 @@ use super::check::{finite, not_negative, result, same_length};
 use super::matched::Moments;
 use crate::math::sqrt;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// How beta is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,9 +137,10 @@ pub fn control_variates(
     let (y_column, c_column) = (arena.take::<f64>(rows)?, arena.take::<f64>(rows)?);
     let mut one = |i: usize| {
         for row in 0..rows {
-            (y_column[row], c_column[row]) = (y[row * width + i], c[row * width + i]);
+            y_column.put(row, y.at(row * width + i));
+            c_column.put(row, c.at(row * width + i));
         }
-        control_variate(y_column, c_column, mu[i], error.map_or(0.0, |error| error[i]), beta)
+        control_variate(y_column, c_column, mu.at(i), error.map_or(0.0, |error| error.at(i)), beta)
     };
     for i in 0..width {
         one(i)?;

@@ -13,6 +13,7 @@ use super::check::{fill, finite, same_length};
 use crate::math::sqrt;
 use crate::simd::Simd;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// What a state keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,20 +87,27 @@ fn head(state: &[f64]) -> Result<(f64, usize, Moments)> {
 
 fn view(state: &[f64]) -> Result<View<'_>> {
     let (count, values, moments) = head(state)?;
-    let (mean, squares) = state[HEAD..].split_at(values);
+    let (mean, squares) = state.part(HEAD..).split_at_checked(values).ok_or(Error::Version)?;
     let view = View { count, moments, mean, squares };
     let sound = finite(state).is_ok() && (0..values).all(|i| view.square(i, i).is_some_and(|x| x >= 0.0));
     if sound { Ok(view) } else { Err(Error::Version) }
+}
+
+/// Head, mean and squares of a state whose head was read.
+fn parts_mut(state: &mut [f64], values: usize) -> Result<(&mut [f64; HEAD], &mut [f64], &mut [f64])> {
+    let (head, rest) = state.split_first_chunk_mut().ok_or(Error::Length)?;
+    let (mean, squares) = rest.split_at_mut_checked(values).ok_or(Error::Version)?;
+    Ok((head, mean, squares))
 }
 
 impl View<'_> {
     /// Sum of squares of values i and j, where it is kept.
     fn square(&self, i: usize, j: usize) -> Option<f64> {
         match self.moments {
-            Moments::Variance => (i == j).then(|| self.squares[i]),
+            Moments::Variance => (i == j).then(|| self.squares.at(i)),
             Moments::Covariance => {
                 let (i, j) = (i.min(j), i.max(j));
-                Some(self.squares[row(i, self.mean.len()) + j - i])
+                Some(self.squares.at(row(i, self.mean.len()) + j - i))
             }
         }
     }
@@ -132,9 +140,10 @@ fn add_squares(squares: &mut [f64], moments: Moments, weight: f64, x: &[f64], me
         Moments::Covariance => {
             let mut rest = squares;
             for i in 0..x.len() {
-                let (row, next) = rest.split_at_mut(x.len() - i);
-                let factor = weight * (x[i] - mean[i]);
-                for ((square, x), mean) in row.iter_mut().zip(&x[i..]).zip(&mean[i..]) {
+                let (x, mean) = (x.part(i..), mean.part(i..));
+                let (row, next) = rest.split_at_mut_checked(x.len()).unwrap_or_default();
+                let factor = weight * (x.at(0) - mean.at(0));
+                for ((square, x), mean) in row.iter_mut().zip(x).zip(mean) {
                     *square += factor * (x - mean);
                 }
                 rest = next;
@@ -160,20 +169,19 @@ pub fn ensemble_add(state: &mut [f64], samples: &[f64]) -> Result<()> {
     if samples.iter().any(|x| x.abs() > LARGEST_SAMPLE) {
         return Err(Error::Range);
     }
-    let (head, rest) = state.split_at_mut(HEAD);
-    let (mean, squares) = rest.split_at_mut(values);
+    let ([count, ..], mean, squares) = parts_mut(state, values)?;
     let work = samples.len() / values * squares.len();
     let simd = if work < WORTH { Simd::Portable } else { Simd::detect() };
     simd.vectorise(
         #[inline(always)]
         || {
-            for sample in samples.chunks_exact(values) {
-                let (before, total) = (head[0], head[0] + 1.0);
+            for sample in samples.chunks_exact(values.max(1)) {
+                let (before, total) = (*count, *count + 1.0);
                 add_squares(squares, moments, before / total, sample, mean);
                 for (mean, x) in mean.iter_mut().zip(sample) {
                     *mean += (x - *mean) / total;
                 }
-                head[0] = total;
+                *count = total;
             }
         },
     );
@@ -193,7 +201,7 @@ pub fn ensemble_merge(state: &mut [f64], other: &[f64]) -> Result<()> {
     if from.count == 0.0 {
         return Ok(());
     }
-    let (mean, squares) = state[HEAD..].split_at_mut(values);
+    let (head, mean, squares) = parts_mut(state, values)?;
     let total = count + from.count;
     for (square, more) in squares.iter_mut().zip(from.squares) {
         *square += more;
@@ -202,7 +210,7 @@ pub fn ensemble_merge(state: &mut [f64], other: &[f64]) -> Result<()> {
     for (mean, other) in mean.iter_mut().zip(from.mean) {
         *mean += (other - *mean) * (from.count / total);
     }
-    state[0] = total;
+    head[0] = total;
     Ok(())
 }
 
@@ -245,7 +253,7 @@ pub fn ensemble_deviation(out: &mut [f64], state: &[f64]) -> Result<()> {
 /// As [`ensemble_deviation`].
 pub fn ensemble_error_of_mean(out: &mut [f64], state: &[f64]) -> Result<()> {
     ensemble_deviation(out, state)?;
-    let root = sqrt(state[0]);
+    let root = sqrt(state.at(0));
     out.iter_mut().for_each(|error| *error /= root);
     Ok(())
 }
@@ -294,6 +302,6 @@ fn block(
     }
     same_length(rows.len().checked_mul(columns.len()).ok_or(Error::Overflow)?, &[out.len()])?;
     view.two_or_more()?;
-    let width = columns.len();
+    let width = columns.len().max(1);
     fill(out, |at| of(&view, rows.start + at / width, columns.start + at % width))
 }

@@ -6,6 +6,7 @@ use super::likelihood::{BiasLikelihood, COLUMNS};
 use super::small::Triangle;
 use crate::math::sqrt;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// b_g is fitted.
 pub const FREE_B_G: u32 = 1;
@@ -54,7 +55,7 @@ impl Free {
 
     /// Their numbers among (b_g, p, f_NL).
     pub(super) fn numbers(&self) -> &[usize] {
-        &self.number[..self.count]
+        self.number.part(..self.count)
     }
 
     /// `at` with other values of those that are free.
@@ -62,13 +63,13 @@ impl Free {
     pub(super) fn with(&self, at: &Bias, values: [f64; 2]) -> Bias {
         let mut all = [at.b_g, at.p, at.f_nl];
         for (number, value) in self.numbers().iter().zip(values) {
-            all[*number] = value;
+            all.put(*number, value);
         }
         Bias { b_g: all[0], p: all[1], f_nl: all[2], delta_c: at.delta_c }
     }
 
     pub(super) fn of(&self, at: &Bias) -> [f64; 2] {
-        self.number.map(|number| [at.b_g, at.p, at.f_nl][number])
+        self.number.map(|number| [at.b_g, at.p, at.f_nl].at(number))
     }
 
     fn b_g(&self) -> bool {
@@ -97,7 +98,7 @@ fn linearised(likelihood: &BiasLikelihood, at: &Bias, free: &Free) -> Triangle<3
     let slopes = slopes(at);
     let mut columns = [[0.0; COLUMNS]; 2];
     for (column, &number) in columns.iter_mut().zip(free.numbers()) {
-        *column = root.times(&slopes[number]);
+        *column = root.times(&slopes.at(number));
     }
     let rest = likelihood.residuals(at);
     let mut triangle = Triangle::EMPTY;
@@ -118,15 +119,15 @@ fn descend(likelihood: &BiasLikelihood, start: &Bias, free: &Free) -> Result<(Bi
     let mut damping = 1e-3;
     for _ in 0..STEPS {
         let triangle = linearised(likelihood, &at, free);
-        let column = |j: usize| sqrt((0..=j).map(|i| triangle.0[i][j] * triangle.0[i][j]).sum());
+        let column = |j: usize| sqrt(triangle.0.iter().take(j + 1).map(|row| row.at(j) * row.at(j)).sum());
         let mut damped = triangle;
         for j in 0..count {
             let mut row = [0.0; 3];
-            row[j] = sqrt(damping) * column(j);
+            row.put(j, sqrt(damping) * column(j));
             damped.push(row);
         }
         let step = damped.solve(count)?;
-        let moved = (0..count).map(|j| (column(j) * step[j]).abs()).fold(0.0, f64::max);
+        let moved = (0..count).map(|j| (column(j) * step.at(j)).abs()).fold(0.0, f64::max);
         let values = free.of(&at);
         let next = free.with(&at, [values[0] + step[0], values[1] + step[1]]);
         let trial = likelihood.at(&next);
@@ -244,9 +245,9 @@ pub(super) fn errors(likelihood: &BiasLikelihood, at: &Bias, free: &Free) -> Res
 fn finish(likelihood: &BiasLikelihood, value: Bias, chi_squared: f64, free: &Free) -> Result<BiasFit> {
     let inverse = linearised(likelihood, &value, free).covariance(free.numbers().len())?;
     let mut covariance = [0.0; 9];
-    for (i, &row) in free.numbers().iter().enumerate() {
-        for (j, &column) in free.numbers().iter().enumerate() {
-            covariance[3 * row + column] = result(inverse[i][j])?;
+    for (&row, values) in free.numbers().iter().zip(&inverse) {
+        for (&column, &value) in free.numbers().iter().zip(values) {
+            covariance.put(3 * row + column, result(value)?);
         }
     }
     let error = [0, 4, 8].map(|at| sqrt(covariance[at]));

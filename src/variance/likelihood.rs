@@ -17,6 +17,7 @@ use super::small::Triangle;
 use crate::math::sqrt;
 use crate::scratch::{Arena, Layout};
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Five columns and the data.
 pub(super) const COLUMNS: usize = 6;
@@ -52,10 +53,10 @@ impl Spectra<'_> {
 
     /// The row of bin i.
     fn row(&self, spectrum: Spectrum, i: usize) -> [f64; COLUMNS] {
-        let (power, linear) = (self.power[i], self.linear[i]);
-        let over = linear / self.alpha[i];
+        let (power, linear, alpha) = (self.power.at(i), self.linear.at(i), self.alpha.at(i));
+        let over = linear / alpha;
         match spectrum {
-            Spectrum::HaloHalo => [linear, over, over / self.alpha[i], 0.0, 0.0, power],
+            Spectrum::HaloHalo => [linear, over, over / alpha, 0.0, 0.0, power],
             Spectrum::HaloMatter => [0.0, 0.0, 0.0, linear, over, power],
         }
     }
@@ -118,18 +119,20 @@ impl BiasLikelihood {
         let mut triangle = Triangle(self.root);
         for i in 0..bins {
             let spectrum = if i < halo_halo { Spectrum::HaloHalo } else { Spectrum::HaloMatter };
-            let line = &root[i * bins..=i * bins + i];
+            let line = root.part(i * bins..=i * bins + i);
+            let Some((&pivot, factors)) = line.split_last() else { return Err(Error::Length) };
             let mut row = spectra.row(spectrum, i);
-            for (factor, before) in line.iter().zip(&white[..i]) {
+            for (factor, before) in factors.iter().zip(white.iter()) {
                 for (x, before) in row.iter_mut().zip(before) {
                     *x -= factor * before;
                 }
             }
-            if line[i] <= 0.0 {
+            if pivot <= 0.0 {
                 return Err(Error::Singular);
             }
-            white[i] = row.map(|x| x / line[i]);
-            triangle.push(white[i].map(|x| scale * x));
+            let row = row.map(|x| x / pivot);
+            triangle.push(row.map(|x| scale * x));
+            white.put(i, row);
         }
         *self = self.with(bins as u64, triangle)?;
         Ok(())

@@ -20,6 +20,7 @@ use core::f64::consts::{FRAC_2_PI, PI};
 use super::check::{fill, finite, not_negative, positive, result, same_length};
 use crate::math::sqrt;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Modes of a shell of width dk about k in a box of side L, counting k and -k: L^3 k^2 dk/(2 pi^2).
 ///
@@ -31,7 +32,7 @@ pub fn continuum_modes(out: &mut [f64], k: &[f64], width: f64, box_size: f64) ->
     positive(k)?;
     let volume = box_size * box_size * box_size;
     fill(out, |i| {
-        let modes = result(volume * k[i] * k[i] * width / (2.0 * PI * PI))?;
+        let modes = result(volume * k.at(i) * k.at(i) * width / (2.0 * PI * PI))?;
         if modes > 0.0 { Ok(modes) } else { Err(Error::Range) }
     })
 }
@@ -84,7 +85,7 @@ pub fn sigma_gaussian(out: &mut [f64], power: &[f64], modes: &[f64], noise: f64)
     finite(power)?;
     not_negative(&[noise])?;
     fill(out, |i| {
-        let sigma = result(sqrt(2.0 / modes[i]) * (power[i] + noise))?;
+        let sigma = result(sqrt(2.0 / modes.at(i)) * (power.at(i) + noise))?;
         if sigma > 0.0 { Ok(sigma) } else { Err(Error::Range) }
     })
 }
@@ -139,8 +140,8 @@ pub fn sigma_suppressed(
     not_negative(&[noise])?;
     let Suppression { cosmic_variance, softening, shot_noise } = *suppression;
     fill(out, |i| {
-        let cosmic = cosmic_variance + (1.0 - cosmic_variance) * step(k[i], softening);
-        let sigma = result(sqrt(2.0 / modes[i]) * (power[i] * cosmic + shot_noise * noise))?;
+        let cosmic = cosmic_variance + (1.0 - cosmic_variance) * step(k.at(i), softening);
+        let sigma = result(sqrt(2.0 / modes.at(i)) * (power.at(i) * cosmic + shot_noise * noise))?;
         if sigma > 0.0 { Ok(sigma) } else { Err(Error::Range) }
     })
 }

@@ -3,6 +3,7 @@
 use super::check::{fill, fill_two, finite, not_negative, same_length};
 use crate::math::sqrt;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// P_paired = (P_original + P_inverted)/2 (Eq. pair): one estimate that costs two simulations.
 ///
@@ -13,7 +14,7 @@ pub fn pair_average(out: &mut [f64], original: &[f64], inverted: &[f64]) -> Resu
     finite(original)?;
     finite(inverted)?;
     // Halves first: no average overflows.
-    fill(out, |i| Ok(0.5 * original[i] + 0.5 * inverted[i]))
+    fill(out, |i| Ok(0.5 * original.at(i) + 0.5 * inverted.at(i)))
 }
 
 /// The relative error of a standard deviation of so many estimates, 1/sqrt(2 (N - 1)) (Eq. errerr; Lehmann & Casella 1998).
@@ -47,7 +48,7 @@ pub fn sigma_per_simulation(
     }
     let root = sqrt(simulations as f64);
     fill_two(sigma, error, |i| {
-        let sigma = super::check::result(root * deviation[i])?;
+        let sigma = super::check::result(root * deviation.at(i))?;
         Ok([sigma, relative * sigma])
     })
 }

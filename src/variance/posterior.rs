@@ -10,6 +10,7 @@ use super::likelihood::BiasLikelihood;
 use crate::math::sqrt;
 use crate::scratch::{Arena, Layout};
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// chi^2 above the least at which a range ends: a density of exp(-12.5).
 const REACH: f64 = 25.0;
@@ -219,8 +220,9 @@ pub fn bias_grid(
     likelihood.check()?;
     fixed.check()?;
     same_length(grid.check(&free)?, &[out.len()])?;
+    let width = grid.points[1].max(1);
     super::check::fill(out, |point| {
-        let values = [grid.value(0, point / grid.points[1]), grid.value(1, point % grid.points[1])];
+        let values = [grid.value(0, point / width), grid.value(1, point % width)];
         result(likelihood.at(&free.with(fixed, values)))
     })
 }
@@ -255,8 +257,9 @@ pub fn marginal(
     let other = points[1 - axis];
     for (i, out) in out.iter_mut().enumerate() {
         let point = |j: usize| if axis == 0 { i * points[1] + j } else { j * points[1] + i };
-        *out =
-            (0..other).map(|j| end_weight(j, other) * libm::exp(0.5 * (least - chi_squared[point(j)]))).sum();
+        *out = (0..other)
+            .map(|j| end_weight(j, other) * libm::exp(0.5 * (least - chi_squared.at(point(j)))))
+            .sum();
     }
     normalise(out, range)
 }
@@ -325,8 +328,8 @@ pub fn read_posterior(density: &[f64], range: [f64; 2], probability: f64) -> Res
     let mean = moment(&|x| x);
     let deviation = sqrt(moment(&|x| (x - mean) * (x - mean)));
     let tail = 0.5 * (1.0 - probability);
-    let top = (0..points).fold(0, |top, i| if density[i] > density[top] { i } else { top });
-    let unit = density[top];
+    let larger = |(top, unit), (i, &x)| if x > unit { (i, x) } else { (top, unit) };
+    let (top, unit) = density.iter().enumerate().fold((0, 0.0), larger);
     let [low, high] = [tail, 1.0 - tail].map(|below| value(quantile(density, unit, below * (sum / unit))));
     let read = Posterior {
         peak: value(peak(density, top)),
@@ -336,7 +339,7 @@ pub fn read_posterior(density: &[f64], range: [f64; 2], probability: f64) -> Res
         high,
         centre: 0.5 * (low + high),
         half_width: 0.5 * (high - low),
-        edge: density[0].max(density[points - 1]) / unit,
+        edge: density.at(0).max(density.at(points - 1)) / unit,
     };
     finite(&[read.peak, mean, deviation, low, high, read.centre, read.half_width])
         .map_err(|_| Error::Range)?;
@@ -348,7 +351,7 @@ fn peak(density: &[f64], top: usize) -> f64 {
     if top == 0 || top == density.len() - 1 {
         return top as f64;
     }
-    let [left, centre, right] = [density[top - 1], density[top], density[top + 1]].map(libm::log);
+    let [left, centre, right] = [top - 1, top, top + 1].map(|i| libm::log(density.at(i)));
     let bend = (centre - left) + (centre - right);
     // Neighbours of zero density have no logarithm.
     let shift = 0.5 * (right - left) / bend;
@@ -422,7 +425,7 @@ pub fn bias_posterior(
     first.fill(0.0);
     second.fill(0.0);
     for (i, first) in first.iter_mut().enumerate() {
-        for (j, second) in second[..grid.points[1]].iter_mut().enumerate() {
+        for (j, second) in second.iter_mut().take(grid.points[1]).enumerate() {
             let at = free.with(&fit.value, [grid.value(0, i), grid.value(1, j)]);
             // Above 1 only by rounding, or in a valley narrower than the search; and never infinite.
             let density = libm::exp((0.5 * (fit.chi_squared - likelihood.at(&at))).min(300.0));

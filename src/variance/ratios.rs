@@ -3,6 +3,7 @@
 use super::check::{fill_two, finite, not_negative, positive, result, same_length};
 use crate::math::sqrt;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Means over an ensemble, bin by bin, with their errors.
 #[derive(Clone, Copy, Debug)]
@@ -45,10 +46,11 @@ pub fn ratio_of_means(
     below.check(len)?;
     check_correlation(correlation, len)?;
     fill_two(ratio, error, |i| {
-        let ratio = result(above.mean[i] / below.mean[i])?;
+        let ratio = result(above.mean.at(i) / below.mean.at(i))?;
         // Written so that a = 0 has an error too.
-        let (first, second) = (above.error[i] / below.mean[i], ratio * (below.error[i] / below.mean[i]));
-        let rho = correlation.map_or(0.0, |rho| rho[i]);
+        let (first, second) =
+            (above.error.at(i) / below.mean.at(i), ratio * (below.error.at(i) / below.mean.at(i)));
+        let rho = correlation.map_or(0.0, |rho| rho.at(i));
         let square = first * first + second * second - 2.0 * rho * first * second;
         Ok([ratio, sqrt(result(square)?.max(0.0))])
     })
@@ -73,10 +75,10 @@ pub fn difference_of_means(
     same_length(len, &[sigma.len()])?;
     positive(sigma)?;
     fill_two(difference, error, |i| {
-        let (a, b) = (first.error[i] / sigma[i], second.error[i] / sigma[i]);
-        let rho = correlation.map_or(0.0, |rho| rho[i]);
+        let (a, b) = (first.error.at(i) / sigma.at(i), second.error.at(i) / sigma.at(i));
+        let rho = correlation.map_or(0.0, |rho| rho.at(i));
         let square = a * a + b * b - 2.0 * rho * a * b;
-        let difference = result((first.mean[i] - second.mean[i]) / sigma[i])?;
+        let difference = result((first.mean.at(i) - second.mean.at(i)) / sigma.at(i))?;
         Ok([difference, sqrt(result(square)?.max(0.0))])
     })
 }

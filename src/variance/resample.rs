@@ -3,10 +3,13 @@
 //! The caller computes the statistic; these kernels say of what. Samples are rows of a table, one estimate each: resampling rows keeps matched
 //! statistics matched, and a pair is one row.
 
+use core::num::NonZero;
+
 use super::check::{fill, fill_two, finite, same_length, table};
 use crate::math::sqrt;
 use crate::noise::philox::{key_of, philox4x32_10};
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// The fourth counter word: this use of the generator. Random modes of one seed take another.
 const DOMAIN: u32 = u32::from_be_bytes(*b"boot");
@@ -51,7 +54,7 @@ pub fn resampled_mean(out: &mut [f64], samples: &[f64], indices: &[u64]) -> Resu
         return Err(Error::Range);
     }
     fill(out, |i| {
-        let sum: f64 = indices.iter().map(|&index| samples[index as usize * values + i]).sum();
+        let sum: f64 = indices.iter().map(|&index| samples.at(index as usize * values + i)).sum();
         super::check::result(sum / indices.len() as f64)
     })
 }
@@ -61,6 +64,11 @@ fn rows_of(samples: &[f64], values: usize) -> Result<usize> {
         return Err(Error::Length);
     }
     Ok(samples.len() / values)
+}
+
+/// Value i of each row.
+fn column(rows: &[f64], values: usize, i: usize) -> impl Iterator<Item = &f64> {
+    rows.iter().skip(i).step_by(values.max(1))
 }
 
 /// The mean of all rows but one, for each row: what a statistic of the mean is computed from by the jackknife.
@@ -74,18 +82,18 @@ pub fn jackknife_means(out: &mut [f64], samples: &[f64], values: usize) -> Resul
     if rows < 2 {
         return Err(Error::Samples);
     }
-    let total = |column: usize| samples.iter().skip(column).step_by(values).sum::<f64>();
-    let without = |total: f64, at: usize| super::check::result((total - samples[at]) / (rows - 1) as f64);
-    for column in 0..values {
-        let total = total(column);
-        for at in (column..samples.len()).step_by(values) {
+    let total = |i: usize| column(samples, values, i).sum::<f64>();
+    let without = |total: f64, at: usize| super::check::result((total - samples.at(at)) / (rows - 1) as f64);
+    for i in 0..values {
+        let total = total(i);
+        for at in (i..samples.len()).step_by(values) {
             without(total, at)?;
         }
     }
-    for column in 0..values {
-        let total = total(column);
-        for at in (column..samples.len()).step_by(values) {
-            out[at] = without(total, at)?;
+    for i in 0..values {
+        let total = total(i);
+        for at in (i..samples.len()).step_by(values) {
+            out.put(at, without(total, at)?);
         }
     }
     Ok(())
@@ -109,10 +117,10 @@ pub fn jackknife(corrected: &mut [f64], error: &mut [f64], whole: &[f64], delete
     }
     let count = rows as f64;
     fill_two(corrected, error, |i| {
-        let column = || deleted.iter().skip(i).step_by(values);
+        let column = || column(deleted, values, i);
         let mean = column().sum::<f64>() / count;
         let square: f64 = column().map(|x| (x - mean) * (x - mean)).sum();
-        let corrected = super::check::result(count * whole[i] - (count - 1.0) * mean)?;
+        let corrected = super::check::result(count * whole.at(i) - (count - 1.0) * mean)?;
         Ok([corrected, super::check::result(sqrt((count - 1.0) / count * square))?])
     })
 }
@@ -127,19 +135,17 @@ pub fn jackknife_covariance(
     rows: usize,
     values: usize,
 ) -> Result<()> {
-    if values == 0 {
-        return Err(Error::Length);
-    }
+    let width = NonZero::new(values).ok_or(Error::Length)?;
     table(deleted, rows, values)?;
     same_length(values.checked_mul(values).ok_or(Error::Overflow)?, &[covariance.len()])?;
     if rows < 2 {
         return Err(Error::Samples);
     }
     let count = rows as f64;
-    let column = |i: usize| deleted.iter().skip(i).step_by(values);
+    let column = |i: usize| column(deleted, values, i);
     let mean = |i: usize| column(i).sum::<f64>() / count;
     fill(covariance, |at| {
-        let (i, j) = (at / values, at % values);
+        let (i, j) = (at / width, at % width);
         let (mean_i, mean_j) = (mean(i), mean(j));
         let sum: f64 = column(i).zip(column(j)).map(|(x, y)| (x - mean_i) * (y - mean_j)).sum();
         super::check::result((count - 1.0) / count * sum)

@@ -11,6 +11,7 @@ use super::pairs::relative_error_of_deviation;
 use super::small::Triangle;
 use crate::math::sqrt;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Least-squares values with their errors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,9 +72,9 @@ impl Scatter<'_> {
 
     /// sigma_r of bin i.
     fn model(&self, at: &Suppression, i: usize) -> f64 {
-        let step = step(self.k[i], at.softening);
+        let step = step(self.k.at(i), at.softening);
         let cosmic = at.cosmic_variance + (1.0 - at.cosmic_variance) * step;
-        sqrt(2.0 / self.modes[i]) * (self.power[i] * cosmic + at.shot_noise * self.noise)
+        sqrt(2.0 / self.modes.at(i)) * (self.power.at(i) * cosmic + at.shot_noise * self.noise)
     }
 
     /// The best R_cv and f_sn, zero or more, for a given k_soft, and chi^2.
@@ -81,9 +82,9 @@ impl Scatter<'_> {
         let linear = self.unknowns() - 1;
         let mut triangle = Triangle::<3>::EMPTY;
         for i in 0..self.sigma.len() {
-            let (step, root) = (step(self.k[i], softening), sqrt(2.0 / self.modes[i]));
-            let power = root * self.power[i];
-            let row = [power * (1.0 - step), root * self.noise, self.sigma[i] - power * step];
+            let (step, root) = (step(self.k.at(i), softening), sqrt(2.0 / self.modes.at(i)));
+            let power = root * self.power.at(i);
+            let row = [power * (1.0 - step), root * self.noise, self.sigma.at(i) - power * step];
             triangle.push(row.map(|x| x / error(i)));
         }
         let [cosmic_variance, shot_noise, _] = triangle.solve(linear)?;
@@ -92,9 +93,10 @@ impl Scatter<'_> {
         if cosmic_variance < 0.0 || shot_noise < 0.0 {
             // Convex: the least of the allowed quarter is on one of its edges.
             let edge = |axis: usize| {
-                let dot = |j: usize| (0..=axis).map(|i| triangle.0[i][axis] * triangle.0[i][j]).sum::<f64>();
+                let rows = triangle.0.iter().take(axis + 1);
+                let dot = |j: usize| rows.clone().map(|row| row.at(axis) * row.at(j)).sum::<f64>();
                 let mut place = [0.0; 2];
-                place[axis] = (dot(2) / dot(axis)).max(0.0);
+                place.put(axis, (dot(2) / dot(axis)).max(0.0));
                 let left = triangle.times(&[place[0], place[1], -1.0]);
                 (place, left.iter().map(|x| x * x).sum::<f64>())
             };
@@ -175,18 +177,19 @@ impl Scatter<'_> {
         let mut triangle = Triangle::<4>::EMPTY;
         let (mut chi_squared, mut flat) = (0.0, true);
         for i in 0..self.sigma.len() {
-            let (k, root) = (self.k[i], sqrt(2.0 / self.modes[i]));
+            let (k, root) = (self.k.at(i), sqrt(2.0 / self.modes.at(i)));
+            let (sigma, power) = (self.sigma.at(i), root * self.power.at(i));
             let Suppression { cosmic_variance, softening, .. } = value;
             let slope = -FRAC_2_PI * k / (softening * softening + k * k);
-            let rest = self.sigma[i] - self.model(&value, i);
+            let rest = sigma - self.model(&value, i);
             let row = [
-                root * self.power[i] * (1.0 - step(k, softening)),
-                root * self.power[i] * (1.0 - cosmic_variance) * slope,
+                power * (1.0 - step(k, softening)),
+                power * (1.0 - cosmic_variance) * slope,
                 root * self.noise,
                 rest,
             ];
             triangle.push(row.map(|x| x / error(i)));
-            flat &= (softening * row[1]).abs() <= FLAT * self.sigma[i];
+            flat &= (softening * row[1]).abs() <= FLAT * sigma;
             chi_squared += (rest / error(i)) * (rest / error(i));
         }
         if flat {
@@ -224,7 +227,7 @@ pub fn fit_suppression_weighted(scatter: &Scatter<'_>, error: &[f64]) -> Result<
     if error.len() < scatter.unknowns() {
         return Err(Error::Samples);
     }
-    let error = |i: usize| error[i];
+    let error = |i: usize| error.at(i);
     scatter.finish(scatter.search(&error)?, &error)
 }
 
@@ -239,11 +242,11 @@ pub fn fit_suppression(scatter: &Scatter<'_>, estimates: u64) -> Result<Suppress
     if scatter.sigma.len() < scatter.unknowns() {
         return Err(Error::Samples);
     }
-    let mut value = scatter.search(&|i| relative * scatter.sigma[i])?;
+    let mut value = scatter.search(&|i| relative * scatter.sigma.at(i))?;
     for _ in 0..ROUNDS {
         let last = value;
         // A model that is negative somewhere on the way has an error all the same.
-        let error = |i: usize| relative * scatter.model(&last, i).abs().max(1e-3 * scatter.sigma[i]);
+        let error = |i: usize| relative * scatter.model(&last, i).abs().max(1e-3 * scatter.sigma.at(i));
         value = scatter.follow(&last, &error)?;
         let settled = |i: usize| {
             let [new, old] = [&value, &last].map(|at| scatter.model(at, i));
