@@ -149,7 +149,7 @@ impl Draw {
         if let Some(colour) = colour {
             for (lane, mode) in out.iter_mut().enumerate() {
                 let l = first as usize + lane;
-                *mode = [re[lane], im[lane]].map(|x| T::from_f64(x * colour.at(l * l)));
+                *mode = [re.at(lane), im.at(lane)].map(|x| T::from_f64(x * colour.at(l * l)));
             }
         } else {
             for (lane, mode) in out.iter_mut().enumerate() {

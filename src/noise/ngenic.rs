@@ -3,6 +3,8 @@
 //! A first pass draws the table, in order, and leaves in each column the seeds that it needs, where its modes will be
 //! ([`Slots`]). A second, in any order, draws the streams of a few columns together, in the lanes of vector instructions.
 
+use core::num::NonZero;
+
 use super::blocks::Shape;
 use super::ranlux::{Lanes, Ranlxd1, uniform};
 use super::realisation::{Realisation, Scheme};
@@ -38,7 +40,7 @@ pub(super) fn draw<T: Real>(
     let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
     let inner = usize::from(count[0] == 1 || count[1] > 1 && stride[1] <= stride[0]);
     let (along, across) = (count[inner], count[1 - inner]);
-    let groups = along.div_ceil(LANES).max(1);
+    let groups = NonZero::new(along.div_ceil(LANES)).unwrap_or(NonZero::<usize>::MIN);
     let columns = Columns {
         n: brick.n(),
         first: start[2],
@@ -50,7 +52,7 @@ pub(super) fn draw<T: Real>(
         shape: Shape::new(realisation),
         colour,
     };
-    exec.parallel_for(groups * across, &|chunk| {
+    exec.parallel_for(groups.get() * across, &|chunk| {
         let (outer, group) = (chunk / groups, chunk % groups);
         let begin = group * LANES;
         let column = |lane: usize| {

@@ -7,6 +7,7 @@
 //! Several statistics vectors whose cross-covariances are wanted are one sample, one after another: every block of the covariance
 //! can be read.
 
+use core::num::NonZero;
 use core::ops::Range;
 
 use super::check::{fill, finite, same_length};
@@ -302,6 +303,7 @@ fn block(
     }
     same_length(rows.len().checked_mul(columns.len()).ok_or(Error::Overflow)?, &[out.len()])?;
     view.two_or_more()?;
-    let width = columns.len().max(1);
+    // Of no columns there are no values.
+    let width = NonZero::new(columns.len()).unwrap_or(NonZero::<usize>::MIN);
     fill(out, |at| of(&view, rows.start + at / width, columns.start + at % width))
 }

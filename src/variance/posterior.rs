@@ -3,6 +3,8 @@
 //! Priors are flat in the free parameters, with b_g > 0. A grid has uniform steps, ends included; of two free parameters the second is
 //! fastest. Integrals are trapezoidal sums, which for a density that has vanished at both ends converge faster than any power of the step.
 
+use core::num::NonZero;
+
 use super::bias::Bias;
 use super::check::{finite, result, same_length};
 use super::fit::{BiasFit, Free, errors, fit_bias, minima};
@@ -187,18 +189,18 @@ fn range(
     // Then in, to where it has just vanished.
     for _ in 0..2 {
         let before = range;
-        for axis in 0..count {
+        for (axis, &side) in before.iter().enumerate().take(count) {
             let least: [f64; PLACES] =
-                core::array::from_fn(|i| scan.across(&before, axis, at(before[axis], PLACES, i)));
+                core::array::from_fn(|i| scan.across(&before, axis, at(side, PLACES, i)));
             let limit = scan.lowest.chi_squared + REACH;
             let inside = |i: &usize| least[*i] < limit;
             let first = (0..PLACES).find(inside).unwrap_or(0);
             let last = (0..PLACES).rev().find(inside).unwrap_or(PLACES - 1);
             let ends = [first.saturating_sub(1), (last + 1).min(PLACES - 1)];
-            range[axis] = ends.map(|i| at(before[axis], PLACES, i));
+            range.put(axis, ends.map(|i| at(side, PLACES, i)));
         }
     }
-    finite(range[..count].as_flattened()).map_err(|_| Error::Convergence)?;
+    finite(range.part(..count).as_flattened()).map_err(|_| Error::Convergence)?;
     Ok((range, scan.lowest))
 }
 
@@ -220,7 +222,7 @@ pub fn bias_grid(
     likelihood.check()?;
     fixed.check()?;
     same_length(grid.check(&free)?, &[out.len()])?;
-    let width = grid.points[1].max(1);
+    let width = NonZero::new(grid.points[1]).ok_or(Error::Range)?;
     super::check::fill(out, |point| {
         let values = [grid.value(0, point / width), grid.value(1, point % width)];
         result(likelihood.at(&free.with(fixed, values)))
