@@ -151,9 +151,9 @@ pub(super) unsafe fn store_components<T: Real, const N: usize>(
         for axis in 0..3 {
             // SAFETY: the particles exist (caller).
             let start = unsafe { start[axis].add(first * stride) };
-            for i in 0..count {
-                // SAFETY: as above; `from` is long enough (caller).
-                unsafe { start.add(i * stride).write(from[axis][i]) };
+            for (i, &value) in from[axis].iter().enumerate().take(count) {
+                // SAFETY: as above.
+                unsafe { start.add(i * stride).write(value) };
             }
         }
     }
