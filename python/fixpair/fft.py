@@ -120,6 +120,9 @@ class Fft(Transform):
         twin("fft_tables_init", self.real)(self._tables, layout.size, n)
         twin("fft_scratch", self.real)(layout, n)
         self._scratch = aligned(layout.size)
+        with self.use() as hook:
+            # That of the bricks, and what lies behind the last plane.
+            self.length = hook.length
 
     @contextlib.contextmanager
     def use(self) -> Iterator[native.Structure]:
@@ -141,7 +144,7 @@ class HostFft(Transform):
         fft = fixpair.HostFft(64, numpy.float32, scipy.fft.rfftn, scipy.fft.irfftn)
         fft.self_test()
 
-    rfftn(cells) returns modes (n, n, n/2 + 1) that are not divided; irfftn(modes, s=(n, n, n)) returns cells that are divided by
+    rfftn(cells) returns modes (n, n, n/2 + 1) that are not divided; irfftn(modes, s=(n, n, n), axes=(0, 1, 2)) returns cells that are divided by
     n^3, which is undone here. What they return is copied into the mesh. An exception in one ends the kernel with its outputs
     undefined, and is raised.
     """
@@ -178,9 +181,9 @@ class HostFft(Transform):
 
     def _inverse(self, _: Any, start: int) -> int:
         def run(data: np.ndarray) -> None:
-            shape = (self.n, self.n, self.n)
+            cells = self._irfftn(self.modes(data), s=(self.n,) * 3, axes=(0, 1, 2))
             # In the precision of the mesh, whichever the function answers in.
-            np.multiply(self._irfftn(self.modes(data), s=shape), float(self.n)**3, out=self.cells(data), casting="same_kind")
+            np.multiply(cells, float(self.n)**3, out=self.cells(data), casting="same_kind")
         return self._caught(run, start)
 
     def _caught(self, run: Callable[[np.ndarray], None], start: int) -> int:

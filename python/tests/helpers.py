@@ -23,4 +23,4 @@ def address(array):
 
 def tolerance(dtype, factor):
     """So many roundings of numbers of order 1."""
-    return factor * np.finfo(dtype).eps
+    return factor * float(np.finfo(dtype).eps)

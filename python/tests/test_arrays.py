@@ -109,6 +109,11 @@ def test_vectors_of_another_type_are_refused_and_sequences_are_read():
     assert fixpair.cosmology.expansion(1, cosmology) == 1.0
 
 
+def test_scalars_of_numpy_are_numbers():
+    length = fixpair.halos.linking_length(np.float32(0.25), np.float64(100.0), np.int64(1000))
+    assert length == fixpair.halos.linking_length(0.25, 100.0, 1000) == 2.5
+
+
 def test_structures_refuse_members_that_they_do_not_have():
     with pytest.raises(AttributeError, match="omega_m"):
         fixpair.Cosmology(omega_matter=0.3)

@@ -20,6 +20,10 @@ def test_a_status_of_a_later_library_is_an_error_too():
     assert type(error) is fixpair.FixpairError and error.status == -999
 
 
+def test_the_version_is_that_of_the_library():
+    assert fixpair.__version__ == fixpair.version() and len(fixpair.version().split(".")) == 3
+
+
 @pytest.mark.parametrize("call, kind, also", [
     (lambda: fixpair.Fft(22), fixpair.MeshSizeError, ValueError),
     (lambda: fixpair.Brick.slab(8, 5, 4), fixpair.BrickError, ValueError),

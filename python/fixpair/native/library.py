@@ -12,7 +12,10 @@ def address(argument):
     if isinstance(argument, (ctypes.Structure, ctypes.Array, ctypes._SimpleCData)):
         return ctypes.addressof(argument)
     interface = getattr(argument, "__array_interface__", None)
-    return argument if interface is None else interface["data"][0]
+    if interface is None:
+        return argument
+    # Scalars of numpy have an address too, but stand for their value.
+    return interface["data"][0] if interface["shape"] else argument.item()
 
 
 class Library:

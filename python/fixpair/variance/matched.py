@@ -49,11 +49,11 @@ def universality(b_g: float, b_g_error: float, f_nl: float, f_nl_error: float, f
     return p.value, error.value
 
 
-def control_variates(y: Any, c: Any, mu: Any, *, error: Any = None, beta: Optional[float] = None) -> np.recarray:
+def control_variates(y: Any, c: Any, mu: Any, *, error: Any = None, beta: Optional[float] = None) -> np.ndarray:
     """<y> - beta (<c> - mu): the expectation of y from few simulations, by controls c of the same seeds whose expectation mu is known.
 
     y, c: (N, values). error: standard error of mu, None where it is exact. beta: a number; None for cov(y, c)/(var(c) + N error^2), of least
-    scatter. Returns one CONTROL_VARIATE for each value (CARPool, Chartier et al. 2021, arXiv:2009.08970).
+    scatter. Returns an array of type CONTROL_VARIATE, one for each value (CARPool, Chartier et al. 2021, arXiv:2009.08970).
     """
     y = rows_of(y, "y")
     c, mu = vector(c, "c", shape=y.shape), vector(mu, "mu", length=y.shape[1])
@@ -62,7 +62,7 @@ def control_variates(y: Any, c: Any, mu: Any, *, error: Any = None, beta: Option
     choice = Beta.OPTIMAL if beta is None else Beta.GIVEN
     with scratch(library.control_variates_scratch, len(y)) as (memory, size):
         library.control_variates(values, values.size, y, c, len(y), mu, error, choice, 0.0 if beta is None else beta, memory, size)
-    return values.view(np.recarray)
+    return values
 
 
 def control_variate_gain(sigma_y: float, sigma_c: float, correlation: float, beta: float) -> float:
