@@ -15,7 +15,7 @@ def arguments(words: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m fixpair.demo", description=__doc__.replace("``", ""))
     parser.add_argument("--size", type=int, default=64, help="particles and cells a side: even, 32 or more, factors 2, 3, 5, 7 (64)")
     parser.add_argument("--box", type=float, default=1000.0, help="side of the box in Mpc/h (1000)")
-    parser.add_argument("--seeds", type=int, default=8, help="universes of each type, 3 or more (8)")
+    parser.add_argument("--seeds", type=int, default=12, help="universes of each type, 3 or more (12)")
     parser.add_argument("--threads", type=int, default=2, help="threads; results do not depend on them (2)")
     parser.add_argument("--output", type=Path, default=Path("fixpair-demo"), help="folder of the figures (fixpair-demo)")
     options = parser.parse_args(words)
