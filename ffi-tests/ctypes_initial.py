@@ -63,7 +63,7 @@ def conditions(twin, order, shape, g_nl, one):
     result.rows_len, result.rows = len(KERNEL), ctypes.addressof(rows)
     result.species = ctypes.addressof(one) if one else None
     # Structures do not keep alive what they point to by address.
-    result.borrowed = rows, one
+    result._borrowed = rows, one
     return result
 
 

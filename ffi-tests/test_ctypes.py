@@ -100,13 +100,12 @@ class Universe:
             (fixpair.TRANSFER, fixpair.AMPLITUDE, 1e6), (fixpair.TRANSFER, fixpair.A_S, 2e-9),
             (fixpair.EISENSTEIN_HU, fixpair.SIGMA8, 0.8), (fixpair.EISENSTEIN_HU_SMOOTH, fixpair.A_S, 2e-9),
         ]
-        pointer = ctypes.POINTER(double)
         waves = array([0.0004 * float(i * i + 1) for i in range(30)])
         for number, (source, normalisation, amount) in enumerate(kinds):
             linear = Linear(ctypes.sizeof(Linear), source, normalisation, None, None, 0, amount)
             if source <= fixpair.TRANSFER:
                 value = power if source == fixpair.POWER else transfer
-                linear.k, linear.value, linear.rows = ctypes.cast(k.start, pointer), ctypes.cast(value.start, pointer), ROWS
+                linear.k, linear.value, linear.rows = k.start, value.start, ROWS
             out = [Buffer(double, 30) for _ in range(4)]
             library.linear_power(out[0].start, waves.start, 30, c, linear, 1.0)
             library.linear_transfer(out[1].start, waves.start, 30, c, linear)
@@ -247,7 +246,6 @@ class Twin:
 
     def universes(self):
         k, power, _ = self.universe.rows()
-        pointer = ctypes.POINTER(ctypes.c_double)
         fft, fine, finer = (self.transform(n) for n in (N, FINE, FINER))
 
         def conditions(pair, **members):
@@ -260,8 +258,7 @@ class Twin:
             return result
 
         first = conditions(True, order=fixpair.FIRST, redshift=49.0, convention=fixpair.LSS)
-        first.linear = Linear(ctypes.sizeof(Linear), fixpair.POWER, fixpair.AS_GIVEN, ctypes.cast(k.start, pointer),
-                              ctypes.cast(power.start, pointer), ROWS, 0.0)
+        first.linear = Linear(ctypes.sizeof(Linear), fixpair.POWER, fixpair.AS_GIVEN, k.start, power.start, ROWS, 0.0)
         self.particles("gaussian", conditions(False), fft, None)
         self.particles("cubic", conditions(True, g_nl=1e5), fft, finer)
         self.particles("first", first, fft, None)
