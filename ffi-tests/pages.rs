@@ -2,12 +2,15 @@
 
 use crate::native::{folder, root, run, tool};
 
-fn page() -> String {
-    std::fs::read_to_string(root().join("docs/adding-fixpair-to-your-code.md")).expect("the page")
+const PAGE: &str = "adding-fixpair-to-your-code.md";
+
+/// A page of `docs/`.
+pub(crate) fn page(name: &str) -> String {
+    std::fs::read_to_string(root().join("docs").join(name)).expect("the page")
 }
 
 /// Blocks of one language.
-fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
+pub(crate) fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     page.split(&format!("```{language}\n")).skip(1).filter_map(|rest| rest.split("```").next()).collect()
 }
 
@@ -34,7 +37,7 @@ extern fftw_complex *Cdata;
 
 #[test]
 fn patches_in_c_compile() {
-    let page = page();
+    let page = page(PAGE);
     let found = blocks(&page, "c");
     assert_eq!(found.len(), 3, "2LPTic, N-GenIC, f_NL");
     for (i, real) in ["double", "float"].into_iter().enumerate() {
@@ -67,7 +70,7 @@ fn patches_in_cpp_compile() {
         println!("skipped: no C++ compiler (c++ or CXX)");
         return;
     }
-    let page = page();
+    let page = page(PAGE);
     let found = blocks(&page, "cpp");
     assert_eq!(found.len(), 1, "Gadget-4");
     assert!(found[0].lines().count() < 30, "less than 30 lines");
@@ -87,7 +90,7 @@ fn patches_in_cpp_compile() {
 /// The program, which the examples compile and run, has the lines of the page.
 #[test]
 fn the_fortran_of_the_page_is_that_of_the_example() {
-    let page = page();
+    let page = page(PAGE);
     let found = blocks(&page, "fortran");
     let example = root().join("c-examples/fortran/initial_conditions.f90");
     let example = std::fs::read_to_string(example).expect("the example");
