@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::native::{LIBRARIES, SYSTEM, folder, root, run, shared_library, tool};
+use crate::native::{LIBRARIES, SYSTEM, folder, root, run, tool};
 use crate::pages::{blocks, page};
 
 /// The Rust of the page, which is an example too, with a `main` that is not called here.
