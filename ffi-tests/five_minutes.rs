@@ -1,10 +1,10 @@
-//! `docs/five-minutes.md`: its programs compile as they stand, run, and print the same numbers, which are those of the page.
+//! `docs/five-minutes.md`: its programs compile as they stand, run, and print the numbers of the page.
 
 use std::path::Path;
 use std::process::Command;
 
 use crate::native::{LIBRARIES, SYSTEM, folder, root, run, tool};
-use crate::pages::{blocks, page};
+use crate::pages::{blocks, page, with_numpy};
 
 /// The Rust of the page, which is an example too, with a `main` that is not called here.
 #[expect(dead_code)]
@@ -83,6 +83,13 @@ fn the_fortran_of_five_minutes_prints_the_table() {
         let modules = format!("-J{}", folder().display());
         let sources: [&Path; 2] = [&module, &source("fortran", "five_minutes.f90")];
         compiled("FC", "gfortran", &["-std=f2018", &modules], &sources, "five_minutes_fortran");
+    }
+}
+
+#[test]
+fn the_python_of_five_minutes_prints_the_table() {
+    if let Some(mut python) = with_numpy() {
+        prints_the_table(python.arg(source("python", "five_minutes.py")));
     }
 }
 

@@ -1,6 +1,9 @@
-//! The code of `docs/adding-fixpair-to-your-code.md`: it compiles where the page puts it.
+//! The code of pages: that of `docs/adding-fixpair-to-your-code.md` compiles where the page puts it, that of
+//! `docs/verify-your-png-ics.md` prints what the page says.
 
-use crate::native::{folder, root, run, tool};
+use std::process::Command;
+
+use crate::native::{folder, root, run, shared_library, tool};
 
 const PAGE: &str = "adding-fixpair-to-your-code.md";
 
@@ -12,6 +15,25 @@ pub(crate) fn page(name: &str) -> String {
 /// Blocks of one language.
 pub(crate) fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     page.split(&format!("```{language}\n")).skip(1).filter_map(|rest| rest.split("```").next()).collect()
+}
+
+/// Python that has numpy and the package of `python/` with the shared library; none where a machine need not have numpy.
+pub(crate) fn with_numpy() -> Option<Command> {
+    let python = || {
+        let mut python = tool("PYTHON", "python3");
+        python.arg("-B").env("PYTHONPATH", root().join("python")).env("FIXPAIR_LIBRARY", shared_library());
+        python
+    };
+    let tried = python().args(["-c", "import numpy, fixpair"]).output();
+    if tried.is_ok_and(|output| output.status.success()) {
+        return Some(python());
+    }
+    assert!(
+        std::env::var_os("FIXPAIR_REQUIRE_NUMPY").is_none(),
+        "python3 (or PYTHON) lacks numpy, or cannot import python/fixpair"
+    );
+    println!("skipped: no numpy for python3 (or PYTHON)");
+    None
 }
 
 /// Compiles, but does not link, a source of this name in which a program has put blocks.
@@ -97,4 +119,15 @@ fn the_fortran_of_the_page_is_that_of_the_example() {
     assert_eq!(found.len(), 1, "one block");
     assert!(found[0].lines().count() < 30, "less than 30 lines");
     assert!(example.contains(found[0]), "the block stands in initial_conditions.f90 as it is");
+}
+
+#[test]
+fn the_python_of_the_verdict_prints_what_the_page_says() {
+    let Some(mut python) = with_numpy() else { return };
+    let page = page("verify-your-png-ics.md");
+    let (found, text) = (blocks(&page, "python"), blocks(&page, "text"));
+    assert_eq!(found.len(), 1, "one program");
+    let output = run(python.args(["-c", found[0]]));
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains(&printed.as_str()), "the page has not:\n{printed}");
 }
