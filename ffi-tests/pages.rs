@@ -1,9 +1,9 @@
 //! The code of pages: that of `docs/adding-fixpair-to-your-code.md` compiles where the page puts it, that of
-//! `docs/verify-your-png-ics.md` prints what the page says.
+//! `docs/verify-your-png-ics.md` prints what the page says, and so does the program behind a table of `docs/speed-and-memory.md`.
 
 use std::process::Command;
 
-use crate::native::{folder, root, run, shared_library, tool};
+use crate::native::{LIBRARIES, SYSTEM, folder, root, run, shared_library, tool};
 
 const PAGE: &str = "adding-fixpair-to-your-code.md";
 
@@ -130,4 +130,16 @@ fn the_python_of_the_verdict_prints_what_the_page_says() {
     let output = run(python.args(["-c", found[0]]));
     let printed = String::from_utf8_lossy(&output.stdout).into_owned();
     assert!(text.contains(&printed.as_str()), "the page has not:\n{printed}");
+}
+
+#[test]
+fn the_table_of_memory_is_what_the_library_asks_for() {
+    let program = folder().join("print_memory");
+    let mut compile = tool("CC", "cc");
+    compile.args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I"]).arg(root().join("include"));
+    compile.arg(root().join("c-examples/print_memory.c")).arg("-o").arg(&program);
+    run(compile.arg(LIBRARIES.join("libfixpair.a")).args(SYSTEM));
+    let output = run(&mut Command::new(program));
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(page("speed-and-memory.md").contains(&table), "the page has not:\n{table}");
 }
