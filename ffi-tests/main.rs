@@ -2,8 +2,10 @@
 //!
 //! [`vectors`] computes named cases through the Rust interface. The programs of this folder compute the same cases through
 //! `fixpair.h` and compare, bit for bit; then they try every bad input that the header speaks of. [`native`] builds the
-//! libraries and the programs, [`programs`] runs them, [`freestanding`] without a system. [`pages`] compiles the code of a page.
+//! libraries and the programs, [`programs`] runs them, [`freestanding`] without a system. [`pages`] compiles the code of a page,
+//! [`five_minutes`] runs that of another.
 
+mod five_minutes;
 mod freestanding;
 mod header;
 mod native;

@@ -1,14 +1,39 @@
-//! The code of `docs/adding-fixpair-to-your-code.md`: it compiles where the page puts it.
+//! The code of pages: that of `docs/adding-fixpair-to-your-code.md` compiles where the page puts it, that of
+//! `docs/verify-your-png-ics.md` prints what the page says, and so does the program behind a table of `docs/speed-and-memory.md`.
 
-use crate::native::{folder, root, run, tool};
+use std::process::Command;
 
-fn page() -> String {
-    std::fs::read_to_string(root().join("docs/adding-fixpair-to-your-code.md")).expect("the page")
+use crate::native::{LIBRARIES, SYSTEM, folder, root, run, shared_library, tool};
+
+const PAGE: &str = "adding-fixpair-to-your-code.md";
+
+/// A page of `docs/`.
+pub(crate) fn page(name: &str) -> String {
+    std::fs::read_to_string(root().join("docs").join(name)).expect("the page")
 }
 
 /// Blocks of one language.
-fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
+pub(crate) fn blocks<'a>(page: &'a str, language: &str) -> Vec<&'a str> {
     page.split(&format!("```{language}\n")).skip(1).filter_map(|rest| rest.split("```").next()).collect()
+}
+
+/// Python that has numpy and the package of `python/` with the shared library; none where a machine need not have numpy.
+pub(crate) fn with_numpy() -> Option<Command> {
+    let python = || {
+        let mut python = tool("PYTHON", "python3");
+        python.arg("-B").env("PYTHONPATH", root().join("python")).env("FIXPAIR_LIBRARY", shared_library());
+        python
+    };
+    let tried = python().args(["-c", "import numpy, fixpair"]).output();
+    if tried.is_ok_and(|output| output.status.success()) {
+        return Some(python());
+    }
+    assert!(
+        std::env::var_os("FIXPAIR_REQUIRE_NUMPY").is_none(),
+        "python3 (or PYTHON) lacks numpy, or cannot import python/fixpair"
+    );
+    println!("skipped: no numpy for python3 (or PYTHON)");
+    None
 }
 
 /// Compiles, but does not link, a source of this name in which a program has put blocks.
@@ -34,7 +59,7 @@ extern fftw_complex *Cdata;
 
 #[test]
 fn patches_in_c_compile() {
-    let page = page();
+    let page = page(PAGE);
     let found = blocks(&page, "c");
     assert_eq!(found.len(), 3, "2LPTic, N-GenIC, f_NL");
     for (i, real) in ["double", "float"].into_iter().enumerate() {
@@ -67,7 +92,7 @@ fn patches_in_cpp_compile() {
         println!("skipped: no C++ compiler (c++ or CXX)");
         return;
     }
-    let page = page();
+    let page = page(PAGE);
     let found = blocks(&page, "cpp");
     assert_eq!(found.len(), 1, "Gadget-4");
     assert!(found[0].lines().count() < 30, "less than 30 lines");
@@ -87,11 +112,34 @@ fn patches_in_cpp_compile() {
 /// The program, which the examples compile and run, has the lines of the page.
 #[test]
 fn the_fortran_of_the_page_is_that_of_the_example() {
-    let page = page();
+    let page = page(PAGE);
     let found = blocks(&page, "fortran");
     let example = root().join("c-examples/fortran/initial_conditions.f90");
     let example = std::fs::read_to_string(example).expect("the example");
     assert_eq!(found.len(), 1, "one block");
     assert!(found[0].lines().count() < 30, "less than 30 lines");
     assert!(example.contains(found[0]), "the block stands in initial_conditions.f90 as it is");
+}
+
+#[test]
+fn the_python_of_the_verdict_prints_what_the_page_says() {
+    let Some(mut python) = with_numpy() else { return };
+    let page = page("verify-your-png-ics.md");
+    let (found, text) = (blocks(&page, "python"), blocks(&page, "text"));
+    assert_eq!(found.len(), 1, "one program");
+    let output = run(python.args(["-c", found[0]]));
+    let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(text.contains(&printed.as_str()), "the page has not:\n{printed}");
+}
+
+#[test]
+fn the_table_of_memory_is_what_the_library_asks_for() {
+    let program = folder().join("print_memory");
+    let mut compile = tool("CC", "cc");
+    compile.args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-I"]).arg(root().join("include"));
+    compile.arg(root().join("c-examples/print_memory.c")).arg("-o").arg(&program);
+    run(compile.arg(LIBRARIES.join("libfixpair.a")).args(SYSTEM));
+    let output = run(&mut Command::new(program));
+    let table = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(page("speed-and-memory.md").contains(&table), "the page has not:\n{table}");
 }
