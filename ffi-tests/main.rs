@@ -3,7 +3,11 @@
 //! [`vectors`] computes named cases through the Rust interface. The programs of this folder compute the same cases through
 //! `fixpair.h` and compare, bit for bit; then they try every bad input that the header speaks of. [`native`] builds the
 //! libraries and the programs, [`programs`] runs them. [`pages`] compiles the code of a page.
+//! [`abi`] holds the interface to what was recorded of it.
 
+mod abi;
+mod abi_header;
+mod abi_structs;
 mod header;
 mod native;
 mod pages;

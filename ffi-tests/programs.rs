@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::process::Command;
 
+use crate::abi::functions;
 use crate::native::{
     FREESTANDING, Language, SYSTEM, attempt, compiler, folder, program, root, run, shared_library,
     shared_program, tool,
@@ -95,21 +96,9 @@ fn undefined(file: &Path) -> BTreeSet<String> {
     symbols.map(|symbol| symbol.trim_start_matches('_').to_owned()).collect()
 }
 
-/// The functions that the header declares.
-fn declared() -> BTreeSet<String> {
-    let header = std::fs::read_to_string(root().join("include/fixpair.h")).expect("the header");
-    let code = header.lines().filter(|line| !line.trim_start().starts_with(['*', '/', '#']));
-    let names = code.filter_map(|line| {
-        let (before, _) = line.split_once('(')?;
-        let name = before.rsplit([' ', '*']).next()?;
-        name.starts_with("fixpair_").then(|| name.to_owned())
-    });
-    names.collect()
-}
-
 #[test]
 fn the_c_programs_call_every_function() {
-    let declared = declared();
+    let declared: BTreeSet<_> = functions().map(|(function, _)| function.name.clone()).collect();
     assert!(declared.len() > 50, "the header was read: {declared:?}");
     // These refuse nothing: any argument will do.
     let never = [
