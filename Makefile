@@ -108,7 +108,7 @@ uninstall:
 	-rmdir $(addprefix $(DESTDIR),$(CMAKEDIR) $(DOCDIR) $(FORTRANDIR) $(dir $(FORTRANDIR)))
 
 check-install: libraries
-	MAKE='$(MAKE)' packaging/check-install
+	MAKE='$(MAKE)' LIBRARIES='$(BUILD)' packaging/check-install
 
 abi:
 	$(CARGO) test --locked --test ffi abi::
