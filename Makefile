@@ -67,6 +67,10 @@ FORTRANDIR := $(DATADIR)/fixpair/fortran
 INSTALLED := $(addprefix $(LIBDIR)/,libfixpair.a $(REAL) $(SONAME) $(SHARED)) $(INCLUDEDIR)/fixpair.h $(PKGCONFIGDIR)/fixpair.pc \
 	$(addprefix $(CMAKEDIR)/,$(CMAKE_FILES)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS))) $(FORTRANDIR)/fixpair.f90
 
+ifneq ($(filter-out $(PREFIX)/%,$(LIBDIR) $(INCLUDEDIR) $(DATADIR)),)
+$(error LIBDIR, INCLUDEDIR and DATADIR must be below PREFIX)
+endif
+
 # Installed files find one another by relative paths, so that the tree may be moved: `up` leads from a folder to PREFIX, `below` from there.
 below = $(patsubst $(PREFIX)/%,%,$(1))
 up = $(subst $(space),/,$(patsubst %,..,$(subst /, ,$(call below,$(1)))))
@@ -89,7 +93,6 @@ $(BUILD)/libfixpair.a: $(SOURCES)
 $(BUILD)/$(SHARED): $(BUILD)/libfixpair.a ;
 
 install: libraries
-	$(if $(filter-out $(PREFIX)/%,$(LIBDIR) $(INCLUDEDIR) $(DATADIR)),$(error LIBDIR, INCLUDEDIR and DATADIR must be below PREFIX))
 	$(INSTALL) -d $(addprefix $(DESTDIR),$(sort $(dir $(INSTALLED))))
 	$(INSTALL) -m 755 $(BUILD)/$(SHARED) $(DESTDIR)$(LIBDIR)/$(REAL)
 	ln -sf $(REAL) $(DESTDIR)$(LIBDIR)/$(SONAME)
