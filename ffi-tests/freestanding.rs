@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::native::{FREESTANDING, Language, attempt, compiler, folder, root, run, tool};
+use crate::abi::functions;
+use crate::native::{FREESTANDING, Language, attempt, compiler, folder, run};
 
 /// Undefined symbols of an object or archive, without the underscore that some platforms put before them.
 pub(crate) fn undefined(file: &Path) -> BTreeSet<String> {
@@ -14,24 +15,9 @@ pub(crate) fn undefined(file: &Path) -> BTreeSet<String> {
     symbols.map(|symbol| symbol.trim_start_matches('_').to_owned()).collect()
 }
 
-/// The functions that the header declares, with options for the preprocessor.
-pub(crate) fn declared(options: &[&str]) -> BTreeSet<String> {
-    let mut preprocessor = tool("CC", "cc");
-    preprocessor.args(["-E", "-P", "-x", "c"]).args(options).arg(root().join("include/fixpair.h"));
-    let text = String::from_utf8_lossy(&run(&mut preprocessor).stdout).into_owned();
-    let calls = text.match_indices('(').filter_map(|(at, _)| {
-        let before = text[..at].trim_end();
-        let name = before.rsplit(|c: char| !c.is_ascii_alphanumeric() && c != '_').next()?;
-        name.starts_with("fixpair_").then(|| name.to_owned())
-    });
-    let names: BTreeSet<_> = calls.collect();
-    assert!(names.len() > 50, "the header was read: {names:?}");
-    names
-}
-
 /// Everything that a library without threads and matrices exports.
 fn kernels() -> BTreeSet<String> {
-    declared(&["-DFIXPAIR_NO_THREADS", "-DFIXPAIR_NO_LINALG"])
+    functions().filter(|(_, hidden)| hidden.is_none()).map(|(function, _)| function.name.clone()).collect()
 }
 
 /// Where the panic handler goes, which is nowhere.

@@ -3,8 +3,11 @@
 //! [`vectors`] computes named cases through the Rust interface. The programs of this folder compute the same cases through
 //! `fixpair.h` and compare, bit for bit; then they try every bad input that the header speaks of. [`native`] builds the
 //! libraries and the programs, [`programs`] runs them, [`freestanding`] without a system. [`pages`] compiles the code of a page,
-//! [`five_minutes`] runs that of another.
+//! [`five_minutes`] runs that of another. [`abi`] holds the interface to what was recorded of it.
 
+mod abi;
+mod abi_header;
+mod abi_structs;
 mod five_minutes;
 mod freestanding;
 mod header;
