@@ -10,6 +10,7 @@ mod kicks;
 mod pair_force;
 mod pre_initial;
 mod regions;
+mod scale;
 mod third;
 
 use std::vec;
