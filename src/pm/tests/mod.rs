@@ -5,6 +5,7 @@ mod drifts;
 mod evolve;
 mod factors;
 mod force;
+mod hostile;
 mod interlacing;
 mod kicks;
 mod pair_force;
