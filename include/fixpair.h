@@ -3524,7 +3524,8 @@ fixpair_status_t fixpair_edges_exact(uint64_t *edges,
  * In:  brick      of Fourier space
  *      binning
  *      pairs_len  pairs of fields
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_LENGTH for no pairs, FIXPAIR_ERROR_OVERFLOW, or why brick or binning are refused
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_LENGTH for no pairs, FIXPAIR_ERROR_OVERFLOW, also for bins of so many modes (10^13 and
+ *          more) that no integer need hold the sum of their |n|, or why brick or binning are refused
  */
 fixpair_status_t fixpair_power_sums_scratch(struct fixpair_layout *scratch,
                                             const struct fixpair_brick *brick,
