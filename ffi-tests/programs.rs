@@ -44,6 +44,12 @@ fn no_parameter_reaches_a_panic() {
 }
 
 #[test]
+#[cfg_attr(not(target_os = "linux"), ignore = "it reserves address space as Linux does")]
+fn sizes_beyond_all_memory_are_served_or_refused() {
+    run(&mut Command::new(program(Language::C, "sparse.c", "sparse", &[])));
+}
+
+#[test]
 fn the_c_of_the_readme_compiles() {
     let readme = std::fs::read_to_string(root().join("README.md")).expect("README.md");
     let blocks: Vec<_> = readme.split("```c\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();

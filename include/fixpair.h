@@ -346,8 +346,8 @@ typedef int32_t fixpair_status_t;
  * ignored by all functions, and overwritten by transforms alone.
  *
  * Fill it with one of the functions below, or by hand for any other layout (a pencil, say). Functions refuse with
- * FIXPAIR_ERROR_MESH_SIZE an n that is zero or odd, with FIXPAIR_ERROR_OVERFLOW one whose cube does not fit memory, and with
- * FIXPAIR_ERROR_BRICK a part outside the mesh or strides that put two elements on one address.
+ * FIXPAIR_ERROR_MESH_SIZE an n that is zero or odd, with FIXPAIR_ERROR_OVERFLOW one above 2^21 and a part that no memory holds (the whole mesh
+ * need not fit any), and with FIXPAIR_ERROR_BRICK a part outside the mesh or strides that put two elements on one address.
  */
 typedef struct fixpair_brick {
   /* Cells on a side of the whole mesh: even. */
@@ -2189,7 +2189,7 @@ fixpair_status_t fixpair_transverse_displacement_f32(float *psi,
  *      c1, c2    velocity over displacement: a H f1 and a H f2, H = 100 E(a) km/s per Mpc/h
  *      exec      or NULL
  * Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _BRICK, _HOOK; FIXPAIR_ERROR_NOT_FINITE for box_size, c1 and c2, or
- *          for displacements that are NaN or infinite, after which position and velocity are undefined
+ *          for displacements that are NaN, infinite or beyond 1e9 boxes and velocities beyond the numbers, after which both are undefined
  */
 fixpair_status_t fixpair_displace_f64(const struct fixpair_components_f64 *position,
                                       const struct fixpair_components_f64 *velocity,
@@ -2974,7 +2974,7 @@ fixpair_status_t fixpair_linking_length(double *length,
                                         uint64_t particles_total);
 
 /*
- * Scratch of fixpair_fof_labels_f64: 36 bytes a particle, and at most 4.2 MB.
+ * Scratch of fixpair_fof_labels_f64: 36 bytes a particle, and at most 5.3 MB.
  *
  * Out: scratch
  * In:  particles  as many as will be passed, or more
@@ -2982,7 +2982,7 @@ fixpair_status_t fixpair_linking_length(double *length,
  */
 fixpair_status_t fixpair_fof_labels_scratch_f64(struct fixpair_layout *scratch, size_t particles);
 
-/* fixpair_fof_labels_scratch_f64 in single precision: 24 bytes a particle, and at most 4.2 MB. */
+/* fixpair_fof_labels_scratch_f64 in single precision: 24 bytes a particle, and at most 5.3 MB. */
 fixpair_status_t fixpair_fof_labels_scratch_f32(struct fixpair_layout *scratch, size_t particles);
 
 /*
@@ -3516,15 +3516,16 @@ fixpair_status_t fixpair_edges_exact(uint64_t *edges,
 /*
  * Scratch of fixpair_power_sums_*, in bytes. For each of w pieces of the work: 8 words, words from fixpair_binning_lengths; 128 for each bin, pair and
  * parity (even, odd) that orders has; and 192 for each l of the brick; and at most 512. Besides: 4 for each |n|^2 below the last edge (at most
- * 3 (n/2)^2 + 1 of them); 4 for each of 2 (n/2)^2 + 1 values of i^2 + j^2, unless a second coordinate has a line of sight other than z; 24 for
- * each l; for each pair 8 for each l and 4 n; 8 for each second edge; and a few cache lines. w is at most 64, and at most as many as have 64 MiB
- * of words together, or 2; for the whole mesh it is at most n/2 + 1.
+ * 3 (n/2)^2 + 1 of them); 4 for each of the 2 (n/2)^2 + 1 values of i^2 + j^2, unless the brick has less than a row for each 16 of them, or a second
+ * coordinate a line of sight other than z; 24 for each l; for each pair 8 for each l and 4 n; 8 for each second edge; and a few cache lines. w is
+ * at most 64, and at most as many as have 64 MiB of words together, or 2; for the whole mesh it is at most n/2 + 1.
  *
  * Out: scratch
  * In:  brick      of Fourier space
  *      binning
  *      pairs_len  pairs of fields
- * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_LENGTH for no pairs, FIXPAIR_ERROR_OVERFLOW, or why brick or binning are refused
+ * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_LENGTH for no pairs, FIXPAIR_ERROR_OVERFLOW, also for bins of so many modes (10^13 and
+ *          more) that no integer need hold the sum of their |n|, or why brick or binning are refused
  */
 fixpair_status_t fixpair_power_sums_scratch(struct fixpair_layout *scratch,
                                             const struct fixpair_brick *brick,

@@ -5,8 +5,9 @@
 //! k = (2 pi/L) (i, j, l): axis 0 and 1 hold i and j in the order 0, 1, ..., n/2, -(n/2-1), ..., -1, axis 2 holds the
 //! half l = 0..=n/2. Strides count elements: reals in configuration space, complex numbers in Fourier space.
 //!
-//! Invariants of a [`Brick`], checked when it is made: n is even and positive; it is inside its mesh; no two of its
-//! elements share an address, because the axes nest (sorted by stride, each stride spans the axes before it).
+//! Invariants of a [`Brick`], checked when it is made: n is even, positive and at most 2^21; it is inside its mesh and fits the address
+//! space, which its mesh need not; no two of its elements share an address, because the axes nest (sorted by stride, each stride spans the axes
+//! before it).
 
 use crate::status::{Error, Result};
 use crate::within::Within;
@@ -33,9 +34,17 @@ impl Space {
     }
 }
 
-/// `MeshSize` if n is zero or odd.
-fn check_side(n: usize) -> Result<()> {
-    if n == 0 || !n.is_multiple_of(2) { Err(Error::MeshSize) } else { Ok(()) }
+/// The largest side of a mesh, whatever part of it is in memory. Its 2^63 cells still have numbers of 64 bits, and |n|^2 is exact in `f64`.
+pub const LARGEST_SIDE: usize = 1 << 21;
+
+/// `MeshSize` if n is zero or odd; `Overflow` above [`LARGEST_SIDE`], or if a table by |n|^2 does not fit the address space.
+pub(crate) fn check_side(n: usize) -> Result<()> {
+    if n == 0 || !n.is_multiple_of(2) {
+        return Err(Error::MeshSize);
+    }
+    let table = (n / 2).checked_mul(n / 2).and_then(|square| square.checked_mul(24)?.checked_add(8));
+    let fits = n <= LARGEST_SIDE && table.is_some_and(|bytes| isize::try_from(bytes).is_ok());
+    if fits { Ok(()) } else { Err(Error::Overflow) }
 }
 
 /// A rectangular part of a mesh in memory.
@@ -52,8 +61,8 @@ impl Brick {
     /// Any layout, such as a pencil or a transposed slab.
     ///
     /// # Errors
-    /// `MeshSize` if n is zero or odd, `Brick` if the invariants of this module fail, `Overflow` if
-    /// n^3 elements of 16 bytes do not fit the address space.
+    /// `MeshSize` if n is zero or odd, `Overflow` if it is above [`LARGEST_SIDE`] or if elements of 16 bytes from the brick's first to
+    /// its last do not fit the address space, `Brick` if the other invariants of this module fail.
     pub fn general(
         n: usize,
         space: Space,
@@ -62,10 +71,6 @@ impl Brick {
         stride: [usize; 3],
     ) -> Result<Self> {
         check_side(n)?;
-        let reals = n.checked_add(2).and_then(|m| m.checked_mul(n)?.checked_mul(n)?.checked_mul(8));
-        if reals.is_none_or(|bytes| isize::try_from(bytes).is_err()) {
-            return Err(Error::Overflow);
-        }
         let brick = Self { n, space, start, count, stride };
         let extent = brick.extent();
         for axis in 0..3 {
@@ -135,9 +140,7 @@ impl Brick {
     /// Elements from one row to the next.
     fn row(n: usize, space: Space) -> Result<usize> {
         check_side(n)?;
-        let row = (n / 2).checked_add(1).and_then(|modes| modes.checked_mul(2 / space.width()));
-        let row = row.ok_or(Error::Overflow)?;
-        row.checked_mul(n).map(|_| row).ok_or(Error::Overflow)
+        Ok((n / 2 + 1) * (2 / space.width()))
     }
 
     /// Cells or modes on a side of the whole mesh.
@@ -281,7 +284,7 @@ mod tests {
         assert_eq!(general(4, [0; 3], [4; 3], [4, 4, 1]), Err(Error::Brick), "two axes on one address");
         assert_eq!(general(4, [0; 3], [4; 3], [16, 3, 1]), Err(Error::Brick), "rows overlap");
         assert_eq!(general(4, [0; 3], [4; 3], [usize::MAX / 2, 4, 1]), Err(Error::Overflow));
-        assert_eq!(general(1 << 21, [0; 3], [1; 3], [1; 3]), Err(Error::Overflow));
+        assert_eq!(general(LARGEST_SIDE + 2, [0; 3], [1; 3], [1; 3]), Err(Error::Overflow));
         assert_eq!(general(usize::MAX - 1, [0; 3], [1; 3], [1; 3]), Err(Error::Overflow));
         for space in [Space::Configuration, Space::Fourier] {
             assert_eq!(Brick::whole(usize::MAX - 1, space), Err(Error::Overflow));
@@ -291,6 +294,41 @@ mod tests {
         assert_eq!(Brick::transposed_slab(usize::MAX - 1, 0, 1), Err(Error::Overflow));
         assert!(general(4, [4, 0, 0], [0, 4, 4], [0; 3]).is_ok_and(|brick| brick.is_empty()));
         assert!(general(4, [0; 3], [4; 3], [1, 4, 16]).is_ok(), "x innermost");
+    }
+
+    #[test]
+    fn parts_of_a_mesh_that_no_memory_holds_are_bricks() {
+        for n in [1_000_000, LARGEST_SIDE] {
+            let (cells, modes) = (Space::Configuration, Space::Fourier);
+            assert_eq!(Brick::whole(n, cells), Err(Error::Overflow), "10^18 cells and more");
+            for space in [cells, modes] {
+                let plane = Brick::slab(n, space, n - 1, 1).unwrap();
+                assert_eq!(plane.elements(), n * if space == cells { n } else { n / 2 + 1 });
+                assert!(plane.reals() <= n * (n + 2));
+                let half = Brick::slab(n, space, n / 2, n / 2);
+                // n = 10^6: 5 10^17 elements of 16 bytes are less than 2^63.
+                assert_eq!(half.is_ok(), n == 1_000_000);
+                let last = if space == cells { n } else { n / 2 + 1 };
+                let corner = Brick::general(n, space, [n - 1, n - 1, last - 1], [1; 3], [0; 3]).unwrap();
+                assert_eq!(corner.reals(), space.width());
+                assert!(!corner.is_whole() && !plane.is_whole());
+                assert_eq!(Brick::general(n, space, [n - 1, n - 1, last], [1; 3], [0; 3]), Err(Error::Brick));
+                assert_eq!(Brick::general(n, space, [n - 1, 2, 0], [2, 1, 1], [1; 3]), Err(Error::Brick));
+            }
+            let row = Brick::transposed_slab(n, n - 1, 1).unwrap();
+            assert_eq!(row.elements(), n * (n / 2 + 1));
+            assert_eq!(Brick::mode(n, n / 2), n as i64 / 2);
+            assert_eq!([n / 2 + 1, n - 1].map(|index| Brick::mode(n, index)), [1 - n as i64 / 2, -1]);
+        }
+    }
+
+    #[test]
+    fn strides_may_reach_beyond_32_bits_but_not_beyond_memory() {
+        let far = |stride| Brick::general(8, Space::Fourier, [0; 3], [2, 2, 2], stride);
+        let brick = far([1 << 40, 1 << 38, 1 << 33]).unwrap();
+        assert_eq!(brick.reals(), 2 * ((1 << 40) + (1 << 38) + (1 << 33) + 1));
+        assert_eq!(far([1 << 59, 1 << 38, 1]), Err(Error::Overflow));
+        assert_eq!(far([usize::MAX, 1 << 38, 1]), Err(Error::Overflow));
     }
 
     #[test]

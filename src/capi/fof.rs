@@ -35,7 +35,7 @@ pub unsafe extern "C" fn fixpair_linking_length(
     })())
 }
 
-/// Scratch of fixpair_fof_labels_f64: 36 bytes a particle, and at most 4.2 MB.
+/// Scratch of fixpair_fof_labels_f64: 36 bytes a particle, and at most 5.3 MB.
 ///
 /// Out: scratch
 /// In:  particles  as many as will be passed, or more
@@ -52,7 +52,7 @@ pub unsafe extern "C" fn fixpair_fof_labels_scratch_f64(
     code(unsafe { query(scratch, particles, halos::fof_labels_scratch::<f64>) })
 }
 
-/// fixpair_fof_labels_scratch_f64 in single precision: 24 bytes a particle, and at most 4.2 MB.
+/// fixpair_fof_labels_scratch_f64 in single precision: 24 bytes a particle, and at most 5.3 MB.
 ///
 /// # Safety
 /// `scratch` is null or points to one value.

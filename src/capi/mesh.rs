@@ -19,8 +19,8 @@ pub const FIXPAIR_SPACE_FOURIER: i32 = 1;
 /// ignored by all functions, and overwritten by transforms alone.
 ///
 /// Fill it with one of the functions below, or by hand for any other layout (a pencil, say). Functions refuse with
-/// FIXPAIR_ERROR_MESH_SIZE an n that is zero or odd, with FIXPAIR_ERROR_OVERFLOW one whose cube does not fit memory, and with
-/// FIXPAIR_ERROR_BRICK a part outside the mesh or strides that put two elements on one address.
+/// FIXPAIR_ERROR_MESH_SIZE an n that is zero or odd, with FIXPAIR_ERROR_OVERFLOW one above 2^21 and a part that no memory holds (the whole mesh
+/// need not fit any), and with FIXPAIR_ERROR_BRICK a part outside the mesh or strides that put two elements on one address.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct fixpair_brick {

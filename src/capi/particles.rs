@@ -112,7 +112,7 @@ pub(super) unsafe fn components_of<'a, C: Triple>(
 ///      c1, c2    velocity over displacement: a H f1 and a H f2, H = 100 E(a) km/s per Mpc/h
 ///      exec      or NULL
 /// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _BRICK, _HOOK; FIXPAIR_ERROR_NOT_FINITE for box_size, c1 and c2, or
-///          for displacements that are NaN or infinite, after which position and velocity are undefined
+///          for displacements that are NaN, infinite or beyond 1e9 boxes and velocities beyond the numbers, after which both are undefined
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.

@@ -61,15 +61,16 @@ pub(super) unsafe fn fields<'a, T>(
 
 /// Scratch of fixpair_power_sums_*, in bytes. For each of w pieces of the work: 8 words, words from fixpair_binning_lengths; 128 for each bin, pair and
 /// parity (even, odd) that orders has; and 192 for each l of the brick; and at most 512. Besides: 4 for each |n|^2 below the last edge (at most
-/// 3 (n/2)^2 + 1 of them); 4 for each of 2 (n/2)^2 + 1 values of i^2 + j^2, unless a second coordinate has a line of sight other than z; 24 for
-/// each l; for each pair 8 for each l and 4 n; 8 for each second edge; and a few cache lines. w is at most 64, and at most as many as have 64 MiB
-/// of words together, or 2; for the whole mesh it is at most n/2 + 1.
+/// 3 (n/2)^2 + 1 of them); 4 for each of the 2 (n/2)^2 + 1 values of i^2 + j^2, unless the brick has less than a row for each 16 of them, or a second
+/// coordinate a line of sight other than z; 24 for each l; for each pair 8 for each l and 4 n; 8 for each second edge; and a few cache lines. w is
+/// at most 64, and at most as many as have 64 MiB of words together, or 2; for the whole mesh it is at most n/2 + 1.
 ///
 /// Out: scratch
 /// In:  brick      of Fourier space
 ///      binning
 ///      pairs_len  pairs of fields
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_LENGTH for no pairs, FIXPAIR_ERROR_OVERFLOW, or why brick or binning are refused
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, FIXPAIR_ERROR_LENGTH for no pairs, FIXPAIR_ERROR_OVERFLOW, also for bins of so many modes (10^13 and
+///          more) that no integer need hold the sum of their |n|, or why brick or binning are refused
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.

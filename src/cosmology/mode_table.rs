@@ -5,6 +5,7 @@
 
 use super::poisson::Poisson;
 use crate::exec::{Exec, for_each_piece};
+use crate::mesh::check_side;
 use crate::status::{Error, Result};
 
 /// Entries that a thread computes at a time.
@@ -13,16 +14,10 @@ const PIECE: usize = 4096;
 /// Entries of a mode table: 3 (n/2)^2 + 1.
 ///
 /// # Errors
-/// `MeshSize` if n is zero or odd; `Overflow` if the table does not fit the address space.
+/// `MeshSize` if n is zero or odd; `Overflow` above [`LARGEST_SIDE`](crate::mesh::LARGEST_SIDE), or if the table does not fit the address space.
 pub fn mode_table_length(n: usize) -> Result<usize> {
-    if n == 0 || !n.is_multiple_of(2) {
-        return Err(Error::MeshSize);
-    }
-    let half = n / 2;
-    let length =
-        half.checked_mul(half).and_then(|m| m.checked_mul(3)?.checked_add(1)).ok_or(Error::Overflow)?;
-    let bytes = length.checked_mul(size_of::<f64>());
-    if bytes.is_none_or(|bytes| isize::try_from(bytes).is_err()) { Err(Error::Overflow) } else { Ok(length) }
+    check_side(n)?;
+    Ok(3 * (n / 2) * (n / 2) + 1)
 }
 
 /// Fills `out` with sqrt(P_Phi(k)/L^3), the r.m.s. modulus of a mode of Phi.

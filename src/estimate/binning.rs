@@ -151,6 +151,26 @@ impl Checked<'_> {
         self.first * self.ranges
     }
 
+    /// `Overflow` if the sum of |n| over a bin of a mesh of side n may not fit an integer, for bins of more than 10^13 modes: narrower ones do.
+    pub(super) fn check_geometry(&self, n: usize) -> Result<()> {
+        // Up to here n^3 points of |n| <= n sqrt(3)/2 sum to less than 2^60.
+        const SAFE_SIDE: usize = 1 << 15;
+        // Somewhat above sqrt(3)/2: half the diagonal of a cell, by which the cells of a shell's points may reach out of the shell.
+        const HALF_DIAGONAL: f64 = 0.867;
+        if n <= SAFE_SIDE {
+            return Ok(());
+        }
+        let farthest = HALF_DIAGONAL * n as f64;
+        let last_square = 3 * (n as u64 / 2).pow(2);
+        let volume = |radius: f64| 4.0 / 3.0 * core::f64::consts::PI * (radius * radius * radius);
+        let fits = self.edges.windows(2).all(|edges| {
+            let [low, high] = [edges[0], edges[1]].map(|edge| libm::sqrt(edge as f64).min(farthest));
+            let points = volume(high + HALF_DIAGONAL) - volume((low - HALF_DIAGONAL).max(0.0));
+            edges[0] > last_square || points * high < i64::MAX as f64
+        });
+        if fits { Ok(()) } else { Err(Error::Overflow) }
+    }
+
     /// Sums of products in a bin.
     pub(super) fn sums(&self, spectra: usize) -> Result<usize> {
         if spectra == 0 {

@@ -42,14 +42,18 @@ fn lookup_length(brick: &Brick, checked: &Checked<'_>) -> Result<usize> {
     usize::try_from(last.min(3 * half * half + 1)).map_err(|_| Error::Overflow)
 }
 
-/// Does the geometry of a row depend on n_x^2 + n_y^2 alone? Rows of one such number are then counted, and done once.
-fn symmetric(checked: &Checked<'_>) -> bool {
-    matches!(checked.second, Second::None) || (checked.axis[0] == 0.0 && checked.axis[1] == 0.0)
-}
+/// Numbers n_x^2 + n_y^2 for each row of a brick, at most, for which rows of one number are counted together.
+const NUMBERS_PER_ROW: usize = 16;
 
+/// Entries to count rows of one n_x^2 + n_y^2 in, whose geometry is then done once: 0 where it depends on more than that number, and where a
+/// small part of a large mesh has few rows of many numbers.
 fn histogram_length(brick: &Brick, checked: &Checked<'_>) -> usize {
     let half = brick.n() / 2;
-    if symmetric(checked) { 2 * half * half + 1 } else { 0 }
+    let numbers = 2 * half * half + 1;
+    let symmetric =
+        matches!(checked.second, Second::None) || (checked.axis[0] == 0.0 && checked.axis[1] == 0.0);
+    let rows = brick.count()[0] * brick.count()[1];
+    if symmetric && numbers / NUMBERS_PER_ROW <= rows { numbers } else { 0 }
 }
 
 /// Edges of the second coordinate to hold its square against.
@@ -80,6 +84,7 @@ fn second_length(checked: &Checked<'_>) -> usize {
 
 /// Scratch of [`sweep`].
 pub(super) fn sweep_scratch(brick: &Brick, checked: &Checked<'_>, spectra: usize) -> Result<Layout> {
+    checked.check_geometry(brick.n())?;
     let pieces = pieces(brick, checked, spectra)?;
     let length = brick.count()[2];
     let bins = checked.bins().checked_mul(pieces).ok_or(Error::Overflow)?;
@@ -200,7 +205,7 @@ pub(super) fn sweep<S: Source>(
         Arena::new(memory, line_bytes).and_then(|mut arena| Line::take(&mut arena, length))
     };
 
-    let histogram = if symmetric(checked) { Some(count_rows(histogram, &rows)) } else { None };
+    let histogram = if histogram.is_empty() { None } else { Some(count_rows(histogram, &rows)) };
     {
         let shared = Shared::new(geometry);
         exec.parallel_for(pieces, &|piece| {

@@ -6,6 +6,8 @@
 //! M = N m,   radius = sqrt(<d^2>),   dispersion = sqrt(<u^2>)
 //! ```
 
+use core::sync::atomic::{AtomicBool, Ordering};
+
 use super::members::{self, Members};
 use super::periodic::{check_finite, home};
 use super::sort::sort_by_size;
@@ -59,11 +61,14 @@ impl Halo {
     }
 }
 
+/// `NotFinite`; `Range` unless the mass is positive and 2^64 of it are finite.
 fn check_mass(particle_mass: f64) -> Result<()> {
+    const MOST_MEMBERS: f64 = u64::MAX as f64;
     if !particle_mass.is_finite() {
         return Err(Error::NotFinite);
     }
-    if particle_mass > 0.0 { Ok(()) } else { Err(Error::Range) }
+    let sensible = particle_mass > 0.0 && (MOST_MEMBERS * particle_mass).is_finite();
+    if sensible { Ok(()) } else { Err(Error::Range) }
 }
 
 /// Largest first; of equal ones the smaller label first.
@@ -101,7 +106,7 @@ pub fn halo_count(labels: &[u64], n_min: u64, scratch: &mut [u8], exec: &dyn Exe
 ///
 /// # Errors
 /// `Length`, also if `halos` is too short; `NotFinite`; `Range` for `n_min` = 0, the mass or the box; `Overflow`, `Scratch`, `Alignment`;
-/// `Hook`, after which halos are undefined.
+/// `Hook`, after which halos are undefined, as they are after `NotFinite` for velocities whose squares no number holds.
 ///
 /// The same bits for any number of threads.
 pub fn halos<T: Real>(
@@ -123,9 +128,17 @@ pub fn halos<T: Real>(
     let halos = halos.get_mut(..groups).ok_or(Error::Length)?;
     check_finite(position, exec)?;
     velocity.map_or(Ok(()), |velocity| check_finite(velocity, exec))?;
+    let lost = AtomicBool::new(false);
     members.write(halos, exec, &|label, records| {
-        Halo::new(&HaloSums::of(label, records, position, velocity, box_size), particle_mass, box_size)
+        let sums = HaloSums::of(label, records, position, velocity, box_size);
+        if !sums.is_sound(box_size) {
+            lost.store(true, Ordering::Relaxed);
+        }
+        Halo::new(&sums, particle_mass, box_size)
     })?;
+    if lost.into_inner() {
+        return Err(Error::NotFinite);
+    }
     sort(halos);
     Ok(groups)
 }

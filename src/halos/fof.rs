@@ -46,7 +46,7 @@ fn shared_bytes<T: Real>(particles: usize) -> Result<usize> {
     Ok(layouts.into_iter().map(|layout| layout.size).max().unwrap_or(0))
 }
 
-/// Scratch of [`fof_labels`]: with r = size of `T`, (3 r + 12) particles bytes, and at most 4.2 MB.
+/// Scratch of [`fof_labels`]: with r = size of `T`, (3 r + 12) particles bytes, and at most 5.3 MB.
 ///
 /// # Errors
 /// `Overflow` for 2^32 particles and more, or if the bytes do not fit the address space.

@@ -3,6 +3,8 @@
 //! Positions and velocities are summed as differences from those of one particle of the group, positions to their nearest image; so nothing
 //! cancels, and a group may lie on the edge of the box. Groups are taken to be smaller than L/2.
 
+use core::sync::atomic::{AtomicBool, Ordering};
+
 use super::members::Members;
 use super::periodic::{check_box, check_finite, difference, place};
 use super::slabs::{check_map, final_label};
@@ -160,7 +162,7 @@ pub(super) fn check<T: Real>(
 ///
 /// # Errors
 /// `Length`, also if `sums` is too short; `NotFinite`; `Range` for `n_min` = 0 or the box; `Table` for the map; `Overflow`, `Scratch`,
-/// `Alignment`; `Hook`, after which sums are undefined.
+/// `Alignment`; `Hook`, after which sums are undefined, as they are after `NotFinite` for velocities whose squares no number holds.
 ///
 /// The same bits for any number of threads.
 pub fn halo_sums<T: Real>(
@@ -182,10 +184,18 @@ pub fn halo_sums<T: Real>(
     let sums = sums.get_mut(..groups).ok_or(Error::Length)?;
     check_finite(position, exec)?;
     velocity.map_or(Ok(()), |velocity| check_finite(velocity, exec))?;
+    let lost = AtomicBool::new(false);
     members.write(sums, exec, &|label, records| {
         let label = final_label(map, label).unwrap_or(label);
-        HaloSums::of(label, records, position, velocity, box_size)
+        let sums = HaloSums::of(label, records, position, velocity, box_size);
+        if !sums.is_sound(box_size) {
+            lost.store(true, Ordering::Relaxed);
+        }
+        sums
     })?;
+    if lost.into_inner() {
+        return Err(Error::NotFinite);
+    }
     sort_by_key(sums, |sums| sums.label);
     Ok(groups)
 }

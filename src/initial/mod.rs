@@ -21,6 +21,8 @@ mod tests;
 #[cfg(test)]
 mod tests_parts;
 #[cfg(test)]
+mod tests_scale;
+#[cfg(test)]
 mod tests_shapes;
 #[cfg(test)]
 mod tests_shapes_estimate;

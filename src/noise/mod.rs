@@ -31,3 +31,5 @@ mod statistics;
 mod tests;
 #[cfg(test)]
 mod tests_ngenic;
+#[cfg(test)]
+mod tests_scale;

@@ -11,6 +11,7 @@ use crate::real::Real;
 use crate::simd::Simd;
 use crate::status::Result;
 use crate::walk::walk;
+use crate::within::Within;
 
 /// Modes that share a table of phases.
 const BLOCK: usize = 64;
@@ -25,7 +26,7 @@ const BLOCK: usize = 64;
 /// # Errors
 /// `Brick` for a brick of configuration space, `Length`, `Hook`.
 ///
-/// Cost: one pass; phases are products of two tabulated ones, right to 1e-15.
+/// The same bits on any threads and bricks. Cost: one pass; phases are products of two tabulated ones, right to 1e-15.
 pub fn interlace<T: Real>(modes: &mut [T], shifted: &[T], brick: &Brick, exec: &dyn Exec) -> Result<()> {
     interlace_with(Simd::detect(), modes, shifted, brick, exec)
 }
@@ -55,11 +56,16 @@ pub(super) fn interlace_with<T: Real>(
                 let nyquist = 2 * x == n || 2 * y == n;
                 let ordinary = if nyquist { 0 } else { run.length.min(n / 2 - z.min(n / 2)) };
                 let (modes, halved) = modes.split_at_mut_checked(2 * ordinary).unwrap_or_default();
-                let blocks = modes.chunks_mut(2 * BLOCK).zip(shifted.chunks(2 * BLOCK));
-                for (block, (modes, shifted)) in blocks.enumerate() {
-                    let first = sum + (z + block * BLOCK) as i64;
-                    let (sine, cosine) = sin_cos_turns(turns_per_mode * first as f64);
-                    mean(modes, shifted, [cosine, sine], &table);
+                let (mut modes, mut shifted, mut l) = (modes, shifted.part(..2 * ordinary), z);
+                while !modes.is_empty() {
+                    // Blocks begin at multiples of their length, wherever the run does: a mode has one phase in all bricks.
+                    let step = l % BLOCK;
+                    let length = BLOCK.min(step + modes.len() / 2) - step;
+                    let Some((block, later)) = modes.split_at_mut_checked(2 * length) else { break };
+                    let Some((from, shifted_later)) = shifted.split_at_checked(2 * length) else { break };
+                    let (sine, cosine) = sin_cos_turns(turns_per_mode * (sum + (l - step) as i64) as f64);
+                    mean(block, from, [cosine, sine], table.part(step..));
+                    (modes, shifted, l) = (later, shifted_later, l + length);
                 }
                 let half = T::from_f64(0.5);
                 halved.iter_mut().for_each(|part| *part = half * *part);
@@ -70,7 +76,7 @@ pub(super) fn interlace_with<T: Real>(
 
 /// modes/2 + first table shifted.
 #[inline(always)]
-fn mean<T: Real>(modes: &mut [T], shifted: &[T], first: [f64; 2], table: &[[f64; 2]; BLOCK]) {
+fn mean<T: Real>(modes: &mut [T], shifted: &[T], first: [f64; 2], table: &[[f64; 2]]) {
     for ((mode, shifted), step) in modes.chunks_exact_mut(2).zip(shifted.chunks_exact(2)).zip(table) {
         let phase = [first[0] * step[0] - first[1] * step[1], first[0] * step[1] + first[1] * step[0]];
         let (re, im) = (shifted[0].to_f64(), shifted[1].to_f64());

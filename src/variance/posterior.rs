@@ -120,9 +120,10 @@ impl Scan<'_> {
     /// The least chi^2 where parameter `axis` has one value.
     fn across(&mut self, range: &[[f64; 2]; 2], axis: usize, value: f64) -> f64 {
         let mut least = f64::INFINITY;
+        let other = (axis + 1) % 2;
         for i in 0..self.places {
             let mut values = [value; 2];
-            values[1 - axis] = at(range[1 - axis], self.places, i);
+            values[other] = at(range[other], self.places, i);
             let place = self.free.with(&self.fixed, values);
             let chi_squared = self.likelihood.at(&place);
             least = least.min(chi_squared);

@@ -18,7 +18,7 @@ use super::sums::{TILE, number};
 use super::triangles::{Triangle, check_triangles};
 use crate::exec::{Exec, Shared};
 use crate::math::sin_cos_turns;
-use crate::mesh::{Brick, Space};
+use crate::mesh::check_side;
 use crate::scratch::{Arena, Layout};
 use crate::simd::Simd;
 use crate::status::{Error, Result};
@@ -54,8 +54,7 @@ struct Sizes {
 
 impl Sizes {
     fn new(edges: &[u64], n: usize, triangles: &[Triangle]) -> Result<Self> {
-        // For a brick's limits on n.
-        Brick::whole(n, Space::Configuration)?;
+        check_side(n)?;
         check_shells(edges, n)?;
         check_triangles(triangles, edges.len() - 1)?;
         let edge = edges.at(edges.len() - 1);

@@ -2,6 +2,7 @@
 
 mod fields;
 mod particles;
+mod scale;
 mod twin;
 
 use std::vec;

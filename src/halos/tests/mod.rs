@@ -2,6 +2,7 @@
 
 mod catalogues;
 mod groups;
+mod hostile;
 mod overdensities;
 mod sets;
 mod slabs;

@@ -109,3 +109,36 @@ fn interlacing_agrees_between_bricks_and_with_its_definition() {
         assert!((a - b).abs() < 1e-15);
     }
 }
+
+#[test]
+fn a_mode_is_interlaced_alike_in_every_brick() {
+    let n = 300;
+    // Rows that begin inside a block of phases, alone and with l outermost.
+    let row = |l: usize, count: usize, stride| {
+        Brick::general(n, Space::Fourier, [7, n - 3, l], [1, 2, count], stride).unwrap()
+    };
+    let whole = row(0, n / 2 + 1, [0, n / 2 + 1, 1]);
+    let modes: Vec<f64> = random(whole.reals(), 51);
+    let shifted: Vec<f64> = random(whole.reals(), 52);
+    let mut expected = modes.clone();
+    interlace(&mut expected, &shifted, &whole, &Serial).unwrap();
+    for part in [row(30, 100, [0, 100, 1]), row(61, 90, [0, 1, 2])] {
+        let at = |mode: usize, l: usize| 2 * (mode * part.stride()[1] + l * part.stride()[2]);
+        let from = |mode: usize, l: usize| 2 * (mode * (n / 2 + 1) + part.start()[2] + l);
+        let mut here = [vec![0.0; part.reals()], vec![0.0; part.reals()]];
+        for (mesh, from_mesh) in here.iter_mut().zip([&modes, &shifted]) {
+            for (mode, l) in (0..2).flat_map(|mode| (0..part.count()[2]).map(move |l| (mode, l))) {
+                mesh[at(mode, l)..at(mode, l) + 2]
+                    .copy_from_slice(&from_mesh[from(mode, l)..from(mode, l) + 2]);
+            }
+        }
+        let [mut here, shifted] = here;
+        interlace(&mut here, &shifted, &part, &Serial).unwrap();
+        for (mode, l) in (0..2).flat_map(|mode| (0..part.count()[2]).map(move |l| (mode, l))) {
+            for part in 0..2 {
+                let (here, there) = (here[at(mode, l) + part], expected[from(mode, l) + part]);
+                assert_eq!(here.to_bits(), there.to_bits(), "{mode} {l}");
+            }
+        }
+    }
+}

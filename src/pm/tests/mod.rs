@@ -5,11 +5,13 @@ mod drifts;
 mod evolve;
 mod factors;
 mod force;
+mod hostile;
 mod interlacing;
 mod kicks;
 mod pair_force;
 mod pre_initial;
 mod regions;
+mod scale;
 mod third;
 
 use std::vec;
