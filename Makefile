@@ -22,6 +22,8 @@ CARGO ?= cargo
 INSTALL ?= install
 CARGO_TARGET_DIR ?= target
 CARGO_BUILD_TARGET ?=
+# Cargo is given --target, and refuses an empty one from the environment.
+unexport CARGO_BUILD_TARGET
 
 # The version has one source, and so has the soname. Before 1.0 a minor version may break the ABI, later only a major one does.
 VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
