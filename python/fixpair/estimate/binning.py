@@ -42,9 +42,9 @@ class Binning(Members, native.Binning):
 
     def lengths(self, spectra: int = 1) -> tuple[int, int, int]:
         """Bins, values of so many spectra, and int64 of their sums."""
-        numbers = [ctypes.c_size_t() for _ in range(3)]
-        library.binning_lengths(*numbers, self, spectra)
-        return tuple(number.value for number in numbers)
+        bins, values, words = (ctypes.c_size_t() for _ in range(3))
+        library.binning_lengths(bins, values, words, self, spectra)
+        return bins.value, values.value, words.value
 
 
 @dataclass
