@@ -173,7 +173,7 @@ class HostFft(Transform):
 
     def _memory(self, start: int) -> np.ndarray:
         size = self.length * self.dtype.itemsize
-        return np.frombuffer((ctypes.c_uint8 * size).from_address(start), np.uint8).view(self.dtype)
+        return np.ctypeslib.as_array((ctypes.c_uint8 * size).from_address(start)).view(self.dtype)
 
     def _forward(self, _: Any, start: int) -> int:
         def run(data: np.ndarray) -> None:
