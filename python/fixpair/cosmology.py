@@ -40,7 +40,8 @@ class Linear(Members, native.Linear):
     Between rows ln P is interpolated in ln k by monotone cubics. Arrays are float64 and kept, not copied.
     """
 
-    pointers = ("k", "value")
+    _pointers = ("k", "value")
+    _lengths = ("rows",)
 
     def __init__(self, *, k: Any = None, power: Any = None, transfer: Any = None, sigma8: float | None = None,
                  amplitude: float | None = None, a_s: float | None = None, smooth: bool = False):
@@ -60,12 +61,11 @@ class Linear(Members, native.Linear):
             self.source = LinearSource.EISENSTEIN_HU_SMOOTH if smooth else LinearSource.EISENSTEIN_HU
             return
         self.source = LinearSource.POWER if power is not None else LinearSource.TRANSFER
-        self.k, self.value, self.rows = k, rows, len(k)
-        if len(rows) != len(k):
-            raise ValueError(f"k has {len(k)} rows, but the spectrum {len(rows)}")
+        self._count("rows", np.size(k))
+        self.k, self.value = k, rows
 
     def _point(self, name: str, value: Any) -> tuple[int, np.ndarray]:
-        column = vector(value, name)
+        column = vector(value, name, length=self.rows)
         return native.address(column), column
 
 
@@ -76,12 +76,13 @@ class Species(Members, native.Species):
     with D(a) stands for, T_m(k, z = 0) D(a), or None for T_m itself. Columns are positive float64 arrays in one unit, kept and not copied.
     """
 
-    pointers = ("k", "matter", "density", "velocity", "reference")
+    _pointers = ("k", "matter", "density", "velocity", "reference")
+    _lengths = ("rows",)
 
     def __init__(self, k: Any, matter: Any, density: Any, velocity: Any, reference: Any = None):
         super().__init__()
         library.species_init(self)
-        self.rows = len(k)
+        self._count("rows", np.size(k))
         self._set({"k": k, "matter": matter, "density": density, "velocity": velocity, "reference": reference})
 
     def _point(self, name: str, value: Any) -> tuple[int | None, np.ndarray | None]:

@@ -36,7 +36,8 @@ class Conditions(Members, native.Conditions):
     Without `linear` the fit of Eisenstein & Hu with sigma8 = 0.8. The structures given are copied; the arrays they point into are kept.
     """
 
-    pointers = ("rows", "species")
+    _pointers = ("rows", "species")
+    _lengths = ("rows_len",)
 
     def __init__(self, seed: int = 0, **members: Any):
         super().__init__()
@@ -50,7 +51,7 @@ class Conditions(Members, native.Conditions):
         if name == "species":
             return (None if value is None else native.address(value)), value
         rows = vector(value, "rows", SHAPE_ROW)
-        self.rows_len = rows.size
+        self._count("rows_len", rows.size)
         return native.address(rows), rows
 
 
