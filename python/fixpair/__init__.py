@@ -36,4 +36,15 @@ from .variance import Bias, Ensemble, Likelihood, Suppression
 from .workspace import Workspace
 
 __version__ = version()
-__all__ = [name for name in dir() if not name.startswith("_")]
+__all__ = [
+    "AlignmentError", "Amplitude", "Beta", "Bias", "Binning", "Brick", "BrickError", "COLA_EXPONENT", "ChoiceError",
+    "Compensation", "Conditions", "Convention", "ConvergenceError", "Cosmology", "Difference", "Ensemble", "Event", "Fft",
+    "FixpairError", "ForceLaw", "Free", "Gravity", "HookError", "HostFft", "LengthError", "Likelihood", "Linear",
+    "LinearSource", "MeshSizeError", "Moments", "Multipole", "Normalisation", "NotFiniteError", "NullError", "Nyquist",
+    "Order", "OutsideError", "OverdensityDefinition", "OverlapError", "Phase", "RangeError", "Ratio", "Realisation",
+    "SamplesError", "Scheme", "ScratchError", "Second", "Selection", "Shape", "SingularError", "SizeError", "Space",
+    "Species", "Spectrum", "Status", "Stepper", "Stopped", "Sums", "Suppression", "TableError", "ThreadError", "Threads",
+    "VersionError", "Window", "Workspace", "__version__", "cosmology", "deposit", "estimate", "evolve", "fft", "halos",
+    "initial", "initial_conditions", "initial_conditions_at", "native", "noise", "pm", "power_spectrum", "read_out",
+    "status_message", "variance", "version", "white_modes",
+]

@@ -5,7 +5,8 @@ have no memory that the library could use, become new arrays where they are only
 """
 
 import ctypes
-from typing import Any, NamedTuple, Optional, Sequence, Union
+from typing import Any, NamedTuple, Union
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,7 +18,7 @@ Particles = Union[np.ndarray, Sequence[np.ndarray]]
 """Three numbers a particle: an array of shape (N, 3) with any stride, a field of a structured array, or three arrays of shape (N,)."""
 
 PRECISIONS = {"f": "f32", "F": "f32", "d": "f64", "D": "f64"}
-REALS = {"f32": np.dtype(np.float32), "f64": np.dtype(np.float64)}
+REALS: dict[str, np.dtype] = {"f32": np.dtype(np.float32), "f64": np.dtype(np.float64)}
 
 
 def precision(array: Array, name: str) -> str:
@@ -52,8 +53,8 @@ def same(real: str, other: str, name: str) -> None:
         raise TypeError(f"{name} is {REALS[other]}, but the others are {REALS[real]}: precisions are not mixed")
 
 
-def vector(values: Any, name: str, dtype: Any = np.float64, length: Optional[int] = None, write: bool = False,
-           shape: Optional[Sequence[int]] = None) -> Array:
+def vector(values: Any, name: str, dtype: Any = np.float64, length: int | None = None, write: bool = False,
+           shape: Sequence[int] | None = None) -> Array:
     """A contiguous array of one type: the array itself, or a new one of a sequence that is only read."""
     if not isinstance(values, np.ndarray):
         if write:
@@ -72,7 +73,7 @@ def vector(values: Any, name: str, dtype: Any = np.float64, length: Optional[int
     return values
 
 
-def output(out: Optional[Array], name: str, shape: Any, dtype: Any = np.float64) -> Array:
+def output(out: Array | None, name: str, shape: Any, dtype: Any = np.float64) -> Array:
     """Where a result goes: the caller's array, or a new one."""
     if out is None:
         return np.empty(shape, dtype)
@@ -102,7 +103,7 @@ class Triples(NamedTuple):
 
     structure: native.Structure
     real: str
-    count: int
+    particles: int
     columns: tuple
 
 
@@ -128,14 +129,14 @@ def triples(values: Particles, name: str, write: bool = False) -> Triples:
     return Triples(structure, reals[0], len(columns[0]), columns)
 
 
-def optional_triples(values: Optional[Particles], name: str, like: Triples) -> Optional[native.Structure]:
+def optional_triples(values: Particles | None, name: str, like: Triples) -> native.Structure | None:
     """The structure of particles that may be left out, as many and of the precision of others."""
     if values is None:
         return None
     found = triples(values, name)
     same(like.real, found.real, name)
-    if found.count != like.count:
-        raise ValueError(f"{name} must be of {like.count} particles, not {found.count}")
+    if found.particles != like.particles:
+        raise ValueError(f"{name} must be of {like.particles} particles, not {found.particles}")
     # The columns belong to the caller's arrays, which outlive the call.
     return found.structure
 
@@ -150,7 +151,7 @@ class View(NamedTuple):
     array: Array
 
 
-def view(array: Array, brick: Optional[native.Structure], space: int, name: str, write: bool = False) -> View:
+def view(array: Array, brick: native.Structure | None, space: int, name: str, write: bool = False) -> View:
     """Cells or modes. Without a brick the array shows the whole mesh: reals (n, n, n), or complex numbers (n, n, n/2 + 1).
 
     With one it is the memory that the brick speaks of, of one dimension, or an array that shows just that part.
@@ -176,7 +177,7 @@ def view(array: Array, brick: Optional[native.Structure], space: int, name: str,
     return View(array.__array_interface__["data"][0], length, brick, real, array)
 
 
-def brick_of(array: Array, brick: Optional[native.Structure], space: int, name: str) -> native.Structure:
+def brick_of(array: Array, brick: native.Structure | None, space: int, name: str) -> native.Structure:
     """The brick that an array of three dimensions shows."""
     n = array.shape[0] if brick is None else brick.n
     last = n // 2 + 1 if space == native.Space.FOURIER else n

@@ -1,7 +1,7 @@
 """Background, growth, linear spectra and the Poisson equation. Lengths in Mpc/h, k in h/Mpc, P in (Mpc/h)^3, velocities in km/s."""
 
 import ctypes
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
@@ -40,10 +40,11 @@ class Linear(Members, native.Linear):
     Between rows ln P is interpolated in ln k by monotone cubics. Arrays are float64 and kept, not copied.
     """
 
-    pointers = ("k", "value")
+    _pointers = ("k", "value")
+    _lengths = ("rows",)
 
-    def __init__(self, *, k: Any = None, power: Any = None, transfer: Any = None, sigma8: Optional[float] = None,
-                 amplitude: Optional[float] = None, a_s: Optional[float] = None, smooth: bool = False):
+    def __init__(self, *, k: Any = None, power: Any = None, transfer: Any = None, sigma8: float | None = None,
+                 amplitude: float | None = None, a_s: float | None = None, smooth: bool = False):
         super().__init__()
         amounts = {Normalisation.SIGMA8: sigma8, Normalisation.AMPLITUDE: amplitude, Normalisation.A_S: a_s}
         given = [(choice, amount) for choice, amount in amounts.items() if amount is not None]
@@ -60,12 +61,11 @@ class Linear(Members, native.Linear):
             self.source = LinearSource.EISENSTEIN_HU_SMOOTH if smooth else LinearSource.EISENSTEIN_HU
             return
         self.source = LinearSource.POWER if power is not None else LinearSource.TRANSFER
-        self.k, self.value, self.rows = k, rows, len(k)
-        if len(rows) != len(k):
-            raise ValueError(f"k has {len(k)} rows, but the spectrum {len(rows)}")
+        self._count("rows", np.size(k))
+        self.k, self.value = k, rows
 
     def _point(self, name: str, value: Any) -> tuple[int, np.ndarray]:
-        column = vector(value, name)
+        column = vector(value, name, length=self.rows)
         return native.address(column), column
 
 
@@ -76,15 +76,16 @@ class Species(Members, native.Species):
     with D(a) stands for, T_m(k, z = 0) D(a), or None for T_m itself. Columns are positive float64 arrays in one unit, kept and not copied.
     """
 
-    pointers = ("k", "matter", "density", "velocity", "reference")
+    _pointers = ("k", "matter", "density", "velocity", "reference")
+    _lengths = ("rows",)
 
     def __init__(self, k: Any, matter: Any, density: Any, velocity: Any, reference: Any = None):
         super().__init__()
         library.species_init(self)
-        self.rows = len(k)
+        self._count("rows", np.size(k))
         self._set({"k": k, "matter": matter, "density": density, "velocity": velocity, "reference": reference})
 
-    def _point(self, name: str, value: Any) -> tuple[Optional[int], Optional[np.ndarray]]:
+    def _point(self, name: str, value: Any) -> tuple[int | None, np.ndarray | None]:
         if value is None and name == "reference":
             return None, None
         column = vector(value, name, length=self.rows)
@@ -98,7 +99,7 @@ def radiation_density(t_cmb: float, n_eff: float, h: float) -> float:
     return omega_r.value
 
 
-def expansion(a: Any, cosmology: native.Structure, *, out: Optional[np.ndarray] = None) -> np.ndarray:
+def expansion(a: Any, cosmology: native.Structure, *, out: np.ndarray | None = None) -> np.ndarray:
     """E(a) = H(a)/H0 of scale factors in 1e-10 to 10; H0 is 100 km/s per Mpc/h."""
     a = vector(a, "a")
     out = output(out, "out", a.shape)
@@ -125,7 +126,7 @@ def growth_suppression(cosmology: native.Structure) -> float:
 
 
 def linear_power(k: Any, cosmology: native.Structure, linear: native.Structure, redshift: float = 0.0, *,
-                 out: Optional[np.ndarray] = None) -> np.ndarray:
+                 out: np.ndarray | None = None) -> np.ndarray:
     """P(k) D^2(z) in (Mpc/h)^3."""
     k = vector(k, "k")
     out = output(out, "out", k.shape)
@@ -134,7 +135,7 @@ def linear_power(k: Any, cosmology: native.Structure, linear: native.Structure, 
 
 
 def linear_transfer(k: Any, cosmology: native.Structure, linear: native.Structure, *,
-                    out: Optional[np.ndarray] = None) -> np.ndarray:
+                    out: np.ndarray | None = None) -> np.ndarray:
     """T(k) of a spectrum, 1 for k -> 0."""
     k = vector(k, "k")
     out = output(out, "out", k.shape)
@@ -150,7 +151,7 @@ def linear_sigma(radius: float, cosmology: native.Structure, linear: native.Stru
 
 
 def alpha(k: Any, cosmology: native.Structure, linear: native.Structure, redshift: float = 0.0,
-          convention: int = Convention.CMB, *, out: Optional[np.ndarray] = None) -> np.ndarray:
+          convention: int = Convention.CMB, *, out: np.ndarray | None = None) -> np.ndarray:
     """alpha(k, z) of delta = alpha Phi: (2/3) (c/H0)^2 k^2 T(k) D(z)/Omega_m, over g(z_rad)/g(0) in the CMB convention."""
     k = vector(k, "k")
     out = output(out, "out", k.shape)

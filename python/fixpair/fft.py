@@ -2,7 +2,8 @@
 
 import contextlib
 import threading
-from typing import Any, Callable, Iterator, Optional
+from typing import Any
+from collections.abc import Callable, Iterator
 
 import ctypes
 
@@ -111,7 +112,7 @@ class Fft(Transform):
     dtype: float64 or float32. pad: unused modes after each plane; by default those with which it is fastest.
     """
 
-    def __init__(self, n: int, dtype: Any = np.float64, pad: Optional[int] = None):
+    def __init__(self, n: int, dtype: Any = np.float64, pad: int | None = None):
         super().__init__(n, dtype, padding(n, dtype) if pad is None else pad)
         self.pad = padding(n, dtype) if pad is None else pad
         layout = native.Layout()
@@ -152,7 +153,7 @@ class HostFft(Transform):
     def __init__(self, n: int, dtype: Any = np.float64, rfftn: Rfftn = np.fft.rfftn, irfftn: Rfftn = np.fft.irfftn):
         super().__init__(n, dtype, 0)
         self._rfftn, self._irfftn = rfftn, irfftn
-        self._error: Optional[BaseException] = None
+        self._error: BaseException | None = None
         self._hook = native.Fft(ctypes.sizeof(native.Fft), None, native.Pass(self._forward), native.Pass(self._inverse),
                                 native.Sum(), self.configuration, self.fourier, self.length)
 
@@ -171,8 +172,8 @@ class HostFft(Transform):
                 self._error = None
 
     def _memory(self, start: int) -> np.ndarray:
-        kind = ctypes.c_float if self.real == "f32" else ctypes.c_double
-        return np.frombuffer((kind * self.length).from_address(start), self.dtype)
+        size = self.length * self.dtype.itemsize
+        return np.ctypeslib.as_array((ctypes.c_uint8 * size).from_address(start)).view(self.dtype)
 
     def _forward(self, _: Any, start: int) -> int:
         def run(data: np.ndarray) -> None:

@@ -8,7 +8,6 @@
 """
 
 import ctypes
-from typing import Optional
 
 import numpy as np
 
@@ -34,16 +33,16 @@ def linking_length(b: float, box_size: float, particles: int) -> float:
     return length.value
 
 
-def fof_labels(position: Particles, box_size: float, linking_length: float, *, ids: Optional[np.ndarray] = None,
-               out: Optional[np.ndarray] = None) -> np.ndarray:
+def fof_labels(position: Particles, box_size: float, linking_length: float, *, ids: np.ndarray | None = None,
+               out: np.ndarray | None = None) -> np.ndarray:
     """The label of each particle, uint64: the smallest id in its group. Particles are friends within the linking length, periodically.
 
     ids: uint64, all different; the particle's number if None. linking_length: from L/10^6 to L/2.
     """
     places = triples(position, "position")
-    labels = output(out, "out", places.count, np.uint64)
-    ids = None if ids is None else vector(ids, "ids", np.uint64, places.count)
-    with scratch(twin("fof_labels_scratch", places.real), places.count) as (memory, size):
+    labels = output(out, "out", places.particles, np.uint64)
+    ids = None if ids is None else vector(ids, "ids", np.uint64, places.particles)
+    with scratch(twin("fof_labels_scratch", places.real), places.particles) as (memory, size):
         twin("fof_labels", places.real)(labels, labels.size, places.structure, ids, 0 if ids is None else ids.size, box_size,
                                         linking_length, memory, size, current())
     return labels
@@ -90,28 +89,28 @@ def halo_count(labels: np.ndarray, n_min: int = 20) -> int:
     return count.value
 
 
-def halos(labels: np.ndarray, position: Particles, box_size: float, *, velocity: Optional[Particles] = None, n_min: int = 20,
+def halos(labels: np.ndarray, position: Particles, box_size: float, *, velocity: Particles | None = None, n_min: int = 20,
           particle_mass: float = 1.0) -> np.recarray:
     """Catalogue of the groups of n_min particles and more, of type HALO: the largest first."""
     places = triples(position, "position")
-    labels = vector(labels, "labels", np.uint64, places.count)
+    labels = vector(labels, "labels", np.uint64, places.particles)
     speed = optional_triples(velocity, "velocity", places)
-    found, count = np.empty(places.count // max(n_min, 1), HALO), ctypes.c_size_t()
+    found, count = np.empty(places.particles // max(n_min, 1), HALO), ctypes.c_size_t()
     with scratch(library.halos_scratch, labels.size) as (memory, size):
         twin("halos", places.real)(found, found.size, count, labels, labels.size, places.structure, speed, box_size, n_min,
                                    particle_mass, memory, size, current())
     return found[:count.value].copy().view(np.recarray)
 
 
-def halo_sums(labels: np.ndarray, position: Particles, box_size: float, *, velocity: Optional[Particles] = None, n_min: int = 20,
-              merged: Optional[np.ndarray] = None) -> np.ndarray:
+def halo_sums(labels: np.ndarray, position: Particles, box_size: float, *, velocity: Particles | None = None, n_min: int = 20,
+              merged: np.ndarray | None = None) -> np.ndarray:
     """Sums over the particles of each group that has n_min of them here, or whose label is in the map, of type HALO_SUMS."""
     places = triples(position, "position")
-    labels = vector(labels, "labels", np.uint64, places.count)
+    labels = vector(labels, "labels", np.uint64, places.particles)
     merged = None if merged is None else _map(merged)
     speed = optional_triples(velocity, "velocity", places)
     entries = 0 if merged is None else len(merged)
-    sums, count = np.empty(places.count // max(n_min, 1) + entries, HALO_SUMS), ctypes.c_size_t()
+    sums, count = np.empty(places.particles // max(n_min, 1) + entries, HALO_SUMS), ctypes.c_size_t()
     with scratch(library.halos_scratch, labels.size) as (memory, size):
         twin("halo_sums", places.real)(sums, sums.size, count, labels, labels.size, places.structure, speed, box_size, n_min, merged,
                                        entries, memory, size, current())
@@ -142,7 +141,7 @@ def overdensity(definition: int, times: float, cosmology: native.Structure, a: f
 
 
 def spheres(centres: np.ndarray, overdensities: np.ndarray, position: Particles, box_size: float, *,
-            particles_total: Optional[int] = None, particle_mass: float = 1.0, n_min: int = 20) -> np.recarray:
+            particles_total: int | None = None, particle_mass: float = 1.0, n_min: int = 20) -> np.recarray:
     """Grows spheres about centres (M, 3) until their mean density has fallen to Delta times that of matter.
 
     Returns (M, overdensities) of type SPHERE; all 0 where the centre is not that dense. M = (4 pi/3) R^3 Delta rho_m holds exactly.
@@ -150,9 +149,9 @@ def spheres(centres: np.ndarray, overdensities: np.ndarray, position: Particles,
     places, centres = triples(position, "position"), _centres(centres)
     overdensities = vector(overdensities, "overdensities")
     found = np.empty((len(centres), overdensities.size), SPHERE)
-    with scratch(twin("spheres_scratch", places.real), places.count) as (memory, size):
+    with scratch(twin("spheres_scratch", places.real), places.particles) as (memory, size):
         twin("spheres", places.real)(found, found.size, centres, len(centres), overdensities, overdensities.size, places.structure,
-                                     box_size, places.count if particles_total is None else particles_total, particle_mass, n_min,
+                                     box_size, places.particles if particles_total is None else particles_total, particle_mass, n_min,
                                      memory, size, current())
     return found.view(np.recarray)
 
@@ -165,7 +164,7 @@ def refine_centres(centres: np.ndarray, radii: np.ndarray, position: Particles, 
     """
     places, centres = triples(position, "position"), _centres(centres, write=True)
     radii = vector(radii, "radii", length=len(centres))
-    with scratch(twin("spheres_scratch", places.real), places.count) as (memory, size):
+    with scratch(twin("spheres_scratch", places.real), places.particles) as (memory, size):
         twin("refine_centres", places.real)(centres, len(centres), radii, places.structure, box_size, factor, n_min, memory, size,
                                             current())
     return centres

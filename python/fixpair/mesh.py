@@ -11,7 +11,7 @@ from ._library import library
 from .native import Space, Window
 from .workspace import aligned
 
-COMPLEX = {"f32": np.dtype(np.complex64), "f64": np.dtype(np.complex128)}
+COMPLEX: dict[str, np.dtype] = {"f32": np.dtype(np.complex64), "f64": np.dtype(np.complex128)}
 
 
 class Brick(native.Brick):
@@ -30,6 +30,11 @@ class Brick(native.Brick):
         brick = cls()
         library.brick_whole(brick, n, space, padding)
         return brick
+
+    @classmethod
+    def of(cls, mesh: "int | native.Structure", space: int) -> "Brick":
+        """That of a whole mesh of side n, or a brick itself."""
+        return cls.whole(mesh, space) if isinstance(mesh, int) else cls.from_buffer_copy(mesh)
 
     @classmethod
     def slab(cls, n: int, first: int, planes: int, space: int = Space.CONFIGURATION) -> "Brick":

@@ -4,7 +4,7 @@ Unit modes w have <|w|^2> = 1, are Hermitian, and are zero at k = 0. Fixed ones 
 arXiv:2204.11103); the phase is 2 pi u1 and the modulus sqrt(-ln u2), and fixing uses the same u1, so that fixed and normal modes are matched.
 """
 
-from typing import Any, Optional, Union
+from typing import Any
 
 import numpy as np
 
@@ -32,17 +32,17 @@ class Realisation(Members, native.Realisation):
         self._set(members)
 
 
-def white_modes(mesh: Union[int, native.Structure], realisation: native.Structure, *, dtype: Any = np.float64,
-                amplitude: Optional[np.ndarray] = None, out: Optional[np.ndarray] = None) -> np.ndarray:
+def white_modes(mesh: int | native.Structure, realisation: native.Structure, *, dtype: Any = np.float64,
+                amplitude: np.ndarray | None = None, out: np.ndarray | None = None) -> np.ndarray:
     """Unit modes w; with a table of amplitudes, w times amplitude[|n|^2], n = k L/(2 pi).
 
     mesh: the side n, or a Brick of Fourier space, any part of any mesh. amplitude: float64, 3 (n/2)^2 + 1 or more factors, as
     :func:`fixpair.cosmology.potential_amplitude_table` gives. out: complex numbers (n, n, n/2 + 1), or memory of the brick; new if None, of the
     precision of dtype. Single precision is the rounded double precision. Returns the modes.
     """
-    brick = mesh if isinstance(mesh, native.Brick) else Brick.whole(mesh, Space.FOURIER)
+    brick = Brick.of(mesh, Space.FOURIER)
     if out is None:
-        out = Brick.from_buffer_copy(brick).zeros(dtype)
+        out = brick.zeros(dtype)
     where = view(out, brick, Space.FOURIER, "out", write=True)
     table = None if amplitude is None else vector(amplitude, "amplitude")
     twin("white_modes", where.real)(where.start, where.length, where.brick, realisation, table,
@@ -50,7 +50,7 @@ def white_modes(mesh: Union[int, native.Structure], realisation: native.Structur
     return out
 
 
-def impose(modes: np.ndarray, realisation: native.Structure, *, brick: Optional[native.Structure] = None) -> np.ndarray:
+def impose(modes: np.ndarray, realisation: native.Structure, *, brick: native.Structure | None = None) -> np.ndarray:
     """Imposes the realisation's amplitude, phase, Nyquist choice and selection on unit modes of your own, in place.
 
     Normal keeps w; fixed makes it w/|w|, or 1 where w = 0. modes: complex numbers (n, n, n/2 + 1), or memory of the brick.
@@ -89,9 +89,9 @@ def ranlxd1(count: int, seed: int) -> np.ndarray:
     return uniforms
 
 
-def ngenic_seeds(mesh: Union[int, native.Structure], seed: int, *, out: Optional[np.ndarray] = None) -> np.ndarray:
+def ngenic_seeds(mesh: int | native.Structure, seed: int, *, out: np.ndarray | None = None) -> np.ndarray:
     """The seeds of the streams of the schemes NGENIC and FASTPM: N-GenIC's table, uint32, for the columns (i, j) of a mesh or brick."""
-    brick = mesh if isinstance(mesh, native.Brick) else Brick.whole(mesh, Space.FOURIER)
+    brick = Brick.of(mesh, Space.FOURIER)
     seeds = output(out, "out", tuple(brick.count[:2]), np.uint32)
     library.ngenic_seeds(seeds, seeds.size, brick, seed)
     return seeds

@@ -3,7 +3,6 @@
 import ctypes
 import weakref
 from contextvars import ContextVar
-from typing import Optional
 
 from . import native
 from ._library import library
@@ -47,7 +46,7 @@ class Threads:
 _blocks: ContextVar[tuple[Threads, ...]] = ContextVar("fixpair_threads", default=())
 
 
-def current() -> Optional[native.Structure]:
+def current() -> native.Structure | None:
     """What a kernel's argument `exec` is: that of the innermost block, or none."""
     blocks = _blocks.get()
     return blocks[-1]._exec if blocks else None

@@ -3,7 +3,8 @@
 import contextlib
 import threading
 from contextvars import ContextVar
-from typing import Any, Callable, Iterator
+from typing import Any
+from collections.abc import Callable, Iterator
 
 import numpy as np
 

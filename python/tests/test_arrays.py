@@ -135,6 +135,17 @@ def test_structures_keep_the_arrays_that_they_point_to():
     assert fixpair.cosmology.linear_sigma(8.0, mine.cosmology, mine.linear) == pytest.approx(0.7, rel=1e-4)
 
 
+def test_lengths_follow_from_arrays():
+    linear, binning = fixpair.Linear(k=[0.1, 0.2, 0.3], power=[3.0, 2.0, 1.0]), fixpair.Binning([1, 4, 9])
+    for structure, member in ((linear, "rows"), (binning, "edges_len"), (fixpair.Conditions(1), "rows_len")):
+        with pytest.raises(AttributeError, match="follows from"):
+            setattr(structure, member, 1000)
+    with pytest.raises(ValueError, match="3 elements"):
+        linear.k = [0.1, 0.2]
+    binning.edges = np.array([1, 4, 9, 16], np.uint64)
+    assert binning.edges_len == 4 and binning.lengths() == (3, 3, binning.lengths()[2])
+
+
 def test_bricks_show_memory_without_copies(dtype):
     brick = fixpair.Brick.slab(8, 2, 3, native.Space.FOURIER)
     memory = np.zeros(brick.reals, dtype)

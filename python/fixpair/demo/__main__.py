@@ -35,8 +35,8 @@ def main(words: list[str]) -> None:
     options = arguments(words)
     try:
         from . import figures
-    except ImportError as error:
-        sys.exit(f"{error}: the figures need matplotlib, pip install 'fixpair[demo]'")
+    except ImportError as missing:
+        sys.exit(f"{missing}: the figures need matplotlib, pip install 'fixpair[demo]'")
     options.output.mkdir(parents=True, exist_ok=True)
     began = time.monotonic()
     print(f"{options.seeds} seeds, 8 universes each: {options.size}^3 particles in {options.box:g} Mpc/h, from z = 32 to z = 1")

@@ -1,6 +1,7 @@
 """The two figures of the demonstration."""
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -15,7 +16,7 @@ from .universes import END, Kind, Laboratory, Measured  # noqa: E402
 
 # Okabe & Ito 2008: told apart by all eyes, and by lightness too.
 COLOURS = {"Normal": "#56B4E9", "Normal-Paired": "#0072B2", "Fixed": "#E69F00", "Fixed-Paired": "#D55E00"}
-STYLE = {
+STYLE: Any = {
     "font.size": 9, "axes.titlesize": 9.5, "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False,
     "axes.linewidth": 0.7, "lines.linewidth": 1.4, "lines.markersize": 4, "legend.frameon": False, "figure.dpi": 110,
     "savefig.dpi": 160, "figure.constrained_layout.use": True,

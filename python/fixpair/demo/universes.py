@@ -1,7 +1,8 @@
 """Universes of the four types, and what is measured in each."""
 
 from dataclasses import dataclass, field
-from typing import Callable, NamedTuple
+from typing import NamedTuple
+from collections.abc import Callable
 
 import numpy as np
 

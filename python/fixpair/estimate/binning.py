@@ -24,7 +24,8 @@ class Binning(Members, native.Binning):
     The arrays are kept, not copied.
     """
 
-    pointers = ("edges", "second_edges")
+    _pointers = ("edges", "second_edges")
+    _lengths = ("edges_len", "second_edges_len")
 
     def __init__(self, edges: Any, *, orders: int = Multipole.MONOPOLE, second: int = Second.NONE, second_edges: Any = None,
                  axis: Any = (0.0, 0.0, 1.0)):
@@ -37,14 +38,14 @@ class Binning(Members, native.Binning):
 
     def _point(self, name: str, value: Any) -> tuple[int, np.ndarray]:
         array = vector(value, name, np.uint64 if name == "edges" else np.float64)
-        setattr(self, f"{name}_len", array.size)
+        self._count(f"{name}_len", array.size)
         return native.address(array), array
 
     def lengths(self, spectra: int = 1) -> tuple[int, int, int]:
         """Bins, values of so many spectra, and int64 of their sums."""
-        numbers = [ctypes.c_size_t() for _ in range(3)]
-        library.binning_lengths(*numbers, self, spectra)
-        return tuple(number.value for number in numbers)
+        bins, values, words = (ctypes.c_size_t() for _ in range(3))
+        library.binning_lengths(bins, values, words, self, spectra)
+        return bins.value, values.value, words.value
 
 
 @dataclass

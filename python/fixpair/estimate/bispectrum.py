@@ -1,7 +1,8 @@
 """Bispectra: sums over cells of D_i D_j D_k, D_s the field of shell s."""
 
 import ctypes
-from typing import Any, Optional, Sequence
+from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,8 +17,8 @@ from ..workspace import aligned, scratch
 from .triangles import triangles_of
 
 
-def shell_modes(modes: np.ndarray, low: int, high: int, *, out: Optional[np.ndarray] = None,
-                brick: Optional[native.Structure] = None) -> np.ndarray:
+def shell_modes(modes: np.ndarray, low: int, high: int, *, out: np.ndarray | None = None,
+                brick: native.Structure | None = None) -> np.ndarray:
     """Copies the modes of one shell, low <= |n|^2 < high, and makes all others zero; `out` is laid out as `modes`, new if None."""
     start = view(modes, brick, Space.FOURIER, "modes")
     if out is None:
@@ -28,8 +29,8 @@ def shell_modes(modes: np.ndarray, low: int, high: int, *, out: Optional[np.ndar
     return out
 
 
-def bispectrum_sums(sums: Optional[np.ndarray], triangles: Any, fields: Sequence[np.ndarray], *,
-                    brick: Optional[native.Structure] = None) -> np.ndarray:
+def bispectrum_sums(sums: np.ndarray | None, triangles: Any, fields: Sequence[np.ndarray], *,
+                    brick: native.Structure | None = None) -> np.ndarray:
     """Adds sum over cells of D_i D_j D_k, for each triangle (T, 3) of shells, to int64 (T, BISPECTRUM_WORDS); zeros if None.
 
     fields: of each shell, real numbers (n, n, n) laid out alike: inverse transforms of :func:`shell_modes`.
@@ -47,8 +48,8 @@ def bispectrum_sums(sums: Optional[np.ndarray], triangles: Any, fields: Sequence
     return sums
 
 
-def bispectrum(sums: Optional[np.ndarray], triangles: Any, edges: Any, modes: np.ndarray, fft: Transform, *,
-               meshes: Optional[int] = None) -> np.ndarray:
+def bispectrum(sums: np.ndarray | None, triangles: Any, edges: Any, modes: np.ndarray, fft: Transform, *,
+               meshes: int | None = None) -> np.ndarray:
     """From modes to the sums of all triangles, with the shells' transforms.
 
     modes: data of ``fft`` that holds delta(x) = sum_k delta_k exp(+i k.x); those of a deposit compensated before. edges: |n|^2, uint64; the last at
@@ -67,7 +68,7 @@ def bispectrum(sums: Optional[np.ndarray], triangles: Any, edges: Any, modes: np
     return sums
 
 
-def _sums(sums: Optional[np.ndarray], triangles: int) -> np.ndarray:
+def _sums(sums: np.ndarray | None, triangles: int) -> np.ndarray:
     shape = (triangles, BISPECTRUM_WORDS)
     return np.zeros(shape, np.int64) if sums is None else vector(sums, "sums", np.int64, shape=shape, write=True)
 

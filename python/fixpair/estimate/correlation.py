@@ -1,7 +1,7 @@
 """Correlation functions by transforms."""
 
 import ctypes
-from typing import Optional, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,9 +14,9 @@ from ..workspace import scratch
 from .binning import Sums
 
 
-def correlation_modes(modes: np.ndarray, other: Optional[np.ndarray] = None, *, compensation: int = Compensation.NONE,
+def correlation_modes(modes: np.ndarray, other: np.ndarray | None = None, *, compensation: int = Compensation.NONE,
                       other_compensation: int = Compensation.NONE, scale: float = 1.0,
-                      brick: Optional[native.Structure] = None) -> np.ndarray:
+                      brick: native.Structure | None = None) -> np.ndarray:
     """f_k <- scale f_k g_k*, compensated, in place; the inverse transform then gives xi(x) = <f(y + x) g(y)> on the mesh.
 
     other: g, laid out as f; None for f itself. scale: of both fields together, 1/(sum of weights)^2 for the density contrast of a deposit.
@@ -30,7 +30,7 @@ def correlation_modes(modes: np.ndarray, other: Optional[np.ndarray] = None, *, 
     return modes
 
 
-def correlation_sums(sums: Sums, meshes: Sequence[np.ndarray], *, brick: Optional[native.Structure] = None) -> Sums:
+def correlation_sums(sums: Sums, meshes: Sequence[np.ndarray], *, brick: native.Structure | None = None) -> Sums:
     """Adds xi(x) L_l(mu), summed over separations bin by bin; |n|^2 of the binning is that of the separation in cells.
 
     meshes: as many as ``sums.spectra``, real numbers (n, n, n) laid out alike. Then xi_l = ``sums.multipoles(1.0)``.

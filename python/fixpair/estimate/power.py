@@ -1,7 +1,8 @@
 """Power spectra of meshes and particles."""
 
 import ctypes
-from typing import Any, NamedTuple, Optional, Sequence
+from typing import Any, NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,8 +17,8 @@ from ..workspace import scratch
 from .binning import Binning, Sums
 
 
-def power_sums(sums: Sums, fields: Sequence[np.ndarray], pairs: Any = ((0, 0),), *, compensation: Optional[Sequence[int]] = None,
-               brick: Optional[native.Structure] = None) -> Sums:
+def power_sums(sums: Sums, fields: Sequence[np.ndarray], pairs: Any = ((0, 0),), *, compensation: Sequence[int] | None = None,
+               brick: native.Structure | None = None) -> Sums:
     """Adds f_k g_k* L_l(mu), summed over modes bin by bin, for several pairs of fields in one sweep.
 
     fields: up to 8 arrays of modes, complex numbers (n, n, n/2 + 1), laid out alike. pairs: numbers of fields, (0, 0) for the spectrum of
@@ -37,7 +38,7 @@ def power_sums(sums: Sums, fields: Sequence[np.ndarray], pairs: Any = ((0, 0),),
     return sums
 
 
-def shot_noise(particles: int, box_size: float, weights: Optional[np.ndarray] = None) -> float:
+def shot_noise(particles: int, box_size: float, weights: np.ndarray | None = None) -> float:
     """V sum w^2/(sum w)^2, or V/N without weights, V = L^3."""
     noise = ctypes.c_double()
     stride, real = (0, "f64") if weights is None else strided(weights, "weights")
@@ -63,7 +64,7 @@ def native_bin(bins: np.ndarray) -> np.dtype:
     return bins.dtype
 
 
-def compensate(modes: np.ndarray, compensation: int, scale: float = 1.0, *, brick: Optional[native.Structure] = None) -> np.ndarray:
+def compensate(modes: np.ndarray, compensation: int, scale: float = 1.0, *, brick: native.Structure | None = None) -> np.ndarray:
     """f_k <- scale f_k, divided by the window, in place: for functions that take modes as they are, as bispectra do.
 
     scale: 1/(sum of weights) for the density contrast of a deposit after a transform that does not divide.
@@ -83,7 +84,7 @@ class Power(NamedTuple):
     noise: float
 
 
-def power_spectrum(position: Particles, box_size: float, binning: Binning, mesh: Any, *, weights: Optional[np.ndarray] = None,
+def power_spectrum(position: Particles, box_size: float, binning: Binning, mesh: Any, *, weights: np.ndarray | None = None,
                    window: int = Window.TSC, interlaced: bool = False, dtype: Any = None) -> Power:
     """The spectrum of particles in one call: deposit, transform, compensate, bin.
 

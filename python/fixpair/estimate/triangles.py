@@ -1,7 +1,7 @@
 """Triangles of shells, and how many triples of modes close each."""
 
 import ctypes
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +19,7 @@ def triangles_of(triangles: Any) -> np.ndarray:
     return triangles
 
 
-def closed_triangles(edges: Any, centres: Optional[Any] = None) -> np.ndarray:
+def closed_triangles(edges: Any, centres: Any | None = None) -> np.ndarray:
     """All triangles of shells that close, uint32 (T, 3): i <= j <= k, counted from 0, in lexicographic order.
 
     edges: increasing values of |n|^2, uint64. centres: one number a shell, with which c_k <= c_i + c_j is asked; without, all that modes may

@@ -4,7 +4,8 @@ noise -> fix -> invert -> colour -> PNG -> transfer -> displace.
 """
 
 import contextlib
-from typing import Any, Iterator, Optional, Union
+from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -35,7 +36,8 @@ class Conditions(Members, native.Conditions):
     Without `linear` the fit of Eisenstein & Hu with sigma8 = 0.8. The structures given are copied; the arrays they point into are kept.
     """
 
-    pointers = ("rows", "species")
+    _pointers = ("rows", "species")
+    _lengths = ("rows_len",)
 
     def __init__(self, seed: int = 0, **members: Any):
         super().__init__()
@@ -45,16 +47,16 @@ class Conditions(Members, native.Conditions):
                 setattr(self.realisation, name[0], members.pop(name[0]))
         self._set(members)
 
-    def _point(self, name: str, value: Any) -> tuple[Optional[int], Any]:
+    def _point(self, name: str, value: Any) -> tuple[int | None, Any]:
         if name == "species":
             return (None if value is None else native.address(value)), value
         rows = vector(value, "rows", SHAPE_ROW)
-        self.rows_len = rows.size
+        self._count("rows_len", rows.size)
         return native.address(rows), rows
 
 
 @contextlib.contextmanager
-def hooks(fft: Transform, fine: Optional[Transform]) -> Iterator[tuple[native.Structure, Optional[native.Structure]]]:
+def hooks(fft: Transform, fine: Transform | None) -> Iterator[tuple[native.Structure, native.Structure | None]]:
     """The structures of one or two transforms."""
     if fine is not None:
         same(fft.real, fine.real, "fine")
@@ -62,9 +64,9 @@ def hooks(fft: Transform, fine: Optional[Transform]) -> Iterator[tuple[native.St
         yield hook, fine_hook
 
 
-def initial_conditions(conditions: native.Structure, fft: Transform, fine: Optional[Transform] = None, *,
-                       position: Optional[Particles] = None,
-                       velocity: Optional[Particles] = None) -> tuple[Particles, Particles]:
+def initial_conditions(conditions: native.Structure, fft: Transform, fine: Transform | None = None, *,
+                       position: Particles | None = None,
+                       velocity: Particles | None = None) -> tuple[Particles, Particles]:
     """One particle for each cell of a transform's mesh, numbered with z fastest.
 
     Two calls that differ in phase give a pair; two that differ in f_nl, cosmology or redshift, with one seed, are matched.
@@ -82,8 +84,8 @@ def initial_conditions(conditions: native.Structure, fft: Transform, fine: Optio
 
 
 def initial_conditions_at(pre_initial: Particles, conditions: native.Structure, fft: Transform,
-                          fine: Optional[Transform] = None, *, position: Optional[Particles] = None,
-                          velocity: Optional[Particles] = None) -> tuple[Particles, Particles]:
+                          fine: Transform | None = None, *, position: Particles | None = None,
+                          velocity: Particles | None = None) -> tuple[Particles, Particles]:
     """The same for particles that begin at positions of your own: a glass, another lattice, another number of them.
 
     Displacements are read out by cloud in cell at pre_initial, q in Mpc/h of shape (N, 3): x = q + Psi(q). All else as
@@ -91,14 +93,14 @@ def initial_conditions_at(pre_initial: Particles, conditions: native.Structure, 
     """
     start = triples(pre_initial, "pre_initial")
     same(fft.real, start.real, "pre_initial")
-    position, velocity, outputs = particles_out(position, velocity, start.count, fft.real)
+    position, velocity, outputs = particles_out(position, velocity, start.particles, fft.real)
     with hooks(fft, fine) as (hook, fine_hook), \
-            scratch(twin("initial_conditions_at_scratch", fft.real), conditions, start.count, hook, fine_hook) as (memory, size):
+            scratch(twin("initial_conditions_at_scratch", fft.real), conditions, start.particles, hook, fine_hook) as (memory, size):
         twin("initial_conditions_at", fft.real)(*outputs, start.structure, conditions, hook, fine_hook, memory, size, current())
     return position, velocity
 
 
-def particles_out(position: Optional[Particles], velocity: Optional[Particles], count: int,
+def particles_out(position: Particles | None, velocity: Particles | None, count: int,
                   real: str) -> tuple[Particles, Particles, list[native.Structure]]:
     """Arrays for so many particles: the caller's or new ones, and the structures that the library takes."""
     arrays, structures = [], []
@@ -106,16 +108,16 @@ def particles_out(position: Optional[Particles], velocity: Optional[Particles], 
         values = np.empty((count, 3), REALS[real]) if values is None else values
         found = triples(values, name, write=True)
         same(real, found.real, name)
-        if found.count != count:
-            raise ValueError(f"{name} must have room for {count} particles, not {found.count}")
+        if found.particles != count:
+            raise ValueError(f"{name} must have room for {count} particles, not {found.particles}")
         arrays.append(values)
         structures.append(found.structure)
     return arrays[0], arrays[1], structures
 
 
-def particle_ids(mesh: Union[int, native.Structure], first_id: int = 0, *, out: Optional[np.ndarray] = None) -> np.ndarray:
+def particle_ids(mesh: int | native.Structure, first_id: int = 0, *, out: np.ndarray | None = None) -> np.ndarray:
     """Ids ((x n) + y) n + z + first_id of the particles of a mesh of side n, or of a brick: uint64, numbered with z fastest."""
-    brick = mesh if isinstance(mesh, native.Brick) else Brick.whole(mesh, Space.CONFIGURATION)
+    brick = Brick.of(mesh, Space.CONFIGURATION)
     count = brick.count[0] * brick.count[1] * brick.count[2]
     ids = output(out, "out", count, np.uint64)
     library.particle_ids(ids, count, brick, first_id, current())

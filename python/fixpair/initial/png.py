@@ -1,7 +1,6 @@
 """Primordial non-Gaussianity on modes of the potential."""
 
 import ctypes
-from typing import Optional
 
 import numpy as np
 
@@ -25,7 +24,7 @@ def shape_rows(shape: int) -> np.ndarray:
 
 
 def add_local(modes: np.ndarray, f_nl: float, g_nl: float, work: Transform, *,
-              brick: Optional[native.Structure] = None) -> np.ndarray:
+              brick: native.Structure | None = None) -> np.ndarray:
     """Local non-Gaussianity, in place: Phi -> Phi + f_nl (Phi^2 - <Phi^2>) + g_nl (Phi^3 - 3 <Phi^2> Phi).
 
     modes: of Phi, complex numbers (n, n, n/2 + 1), after fixing and inverting and before alpha. work: the transform on which products are
@@ -41,7 +40,7 @@ def add_local(modes: np.ndarray, f_nl: float, g_nl: float, work: Transform, *,
 
 
 def add_shape(modes: np.ndarray, f_nl: float, n_s: float, rows: np.ndarray, work: Transform, *,
-              brick: Optional[native.Structure] = None) -> np.ndarray:
+              brick: native.Structure | None = None) -> np.ndarray:
     """Quadratic non-Gaussianity of any shape, in place: Phi -> Phi + f_nl sum over rows of c X_out[(X_a Phi)(X_b Phi)].
 
     (X_s f)_k is |n|^(e s) f_k, e = (4 - n_s)/3, n = k L/(2 pi). rows: of :func:`shape_rows` or your own; exponents of a row sum to

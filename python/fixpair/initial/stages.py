@@ -1,6 +1,6 @@
 """Initial conditions stage by stage: from modes of the potential to density, displacements and particles."""
 
-from typing import NamedTuple, Optional
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,15 +14,15 @@ from ..threads import current
 from ..workspace import scratch
 
 
-def scale_modes(modes: np.ndarray, table: np.ndarray, *, brick: Optional[native.Structure] = None) -> np.ndarray:
+def scale_modes(modes: np.ndarray, table: np.ndarray, *, brick: native.Structure | None = None) -> np.ndarray:
     """f_k <- f_k table[|n|^2], n = k L/(2 pi), in place; Nyquist modes become zero. With a table of alpha: from Phi to the density."""
     where, table = view(modes, brick, Space.FOURIER, "modes", write=True), vector(table, "table")
     twin("scale_modes", where.real)(where.start, where.length, where.brick, table, table.size, current())
     return modes
 
 
-def copy_modes(to: np.ndarray, source: np.ndarray, *, to_brick: Optional[native.Structure] = None,
-               source_brick: Optional[native.Structure] = None) -> np.ndarray:
+def copy_modes(to: np.ndarray, source: np.ndarray, *, to_brick: native.Structure | None = None,
+               source_brick: native.Structure | None = None) -> np.ndarray:
     """Copies modes to a mesh of another side or layout. Those that one mesh has alone are dropped or become zero."""
     where = view(to, to_brick, Space.FOURIER, "to", write=True)
     start = view(source, source_brick, Space.FOURIER, "source")
@@ -31,8 +31,8 @@ def copy_modes(to: np.ndarray, source: np.ndarray, *, to_brick: Optional[native.
     return to
 
 
-def second_order_source(density: np.ndarray, work: Transform, *, out: Optional[np.ndarray] = None,
-                        brick: Optional[native.Structure] = None) -> np.ndarray:
+def second_order_source(density: np.ndarray, work: Transform, *, out: np.ndarray | None = None,
+                        brick: native.Structure | None = None) -> np.ndarray:
     """S = sum over a < b of phi_aa phi_bb - phi_ab^2, phi_ab of modes k_a k_b/k^2 delta_k: the source of second-order displacements.
 
     density: modes of the linear density, complex numbers (n, n, n/2 + 1), or memory of the brick. work: a transform of side n (products
@@ -75,8 +75,8 @@ def third_order_sources(density: np.ndarray, fft: Transform) -> ThirdOrderSource
     return ThirdOrderSources(*map(fft.modes, outputs))
 
 
-def displacement(source: np.ndarray, axis: int, scale: float, fft: Transform, *, out: Optional[np.ndarray] = None,
-                 brick: Optional[native.Structure] = None) -> np.ndarray:
+def displacement(source: np.ndarray, axis: int, scale: float, fft: Transform, *, out: np.ndarray | None = None,
+                 brick: native.Structure | None = None) -> np.ndarray:
     """One component of a displacement on the cells: modes scale i n_a/|n|^2 source_k, n = k L/(2 pi).
 
     The linear density with scale L/(2 pi) gives Psi1; S with -(D2/D^2) L/(2 pi) gives Psi2; in the unit of L. source: complex numbers
@@ -91,7 +91,7 @@ def displacement(source: np.ndarray, axis: int, scale: float, fft: Transform, *,
 
 
 def transverse_displacement(sources: ThirdOrderSources, axis: int, scale: float, fft: Transform, *,
-                            out: Optional[np.ndarray] = None) -> np.ndarray:
+                            out: np.ndarray | None = None) -> np.ndarray:
     """One component of the transverse displacement of the third order: modes scale i (n x C)_axis/|n|^2, on the cells.
 
     scale: (D3c/D^3) L/(2 pi). sources: of :func:`third_order_sources` of the same transform. Returns ``fft.cells`` of `out`.
@@ -105,8 +105,8 @@ def transverse_displacement(sources: ThirdOrderSources, axis: int, scale: float,
     return fft.cells(psi)
 
 
-def displace(position: Particles, velocity: Particles, psi1: np.ndarray, psi2: Optional[np.ndarray], axis: int,
-             box_size: float, c1: float, c2: float = 0.0, *, brick: Optional[native.Structure] = None) -> None:
+def displace(position: Particles, velocity: Particles, psi1: np.ndarray, psi2: np.ndarray | None, axis: int,
+             box_size: float, c1: float, c2: float = 0.0, *, brick: native.Structure | None = None) -> None:
     """Moves the particles of cells along one axis: x = q + psi1 + psi2, wrapped into [0, L); v = c1 psi1 + c2 psi2.
 
     position, velocity: one particle a cell, of which one component is written. psi1, psi2: real numbers (n, n, n), or memory of the

@@ -29,4 +29,16 @@ from .structures import (
     Structure, Sum, Suppression, SuppressionFit,
 )
 
-__all__ = [name for name in dir() if not name.startswith("_")]
+__all__ = [
+    "AlignmentError", "Amplitude", "BISPECTRUM_WORDS", "Beta", "Bias", "BiasFit", "BiasLikelihood", "Bin", "Binning",
+    "Body", "Brick", "BrickError", "COLA_EXPONENT", "ChoiceError", "Compensation", "Components", "Conditions",
+    "ControlVariate", "Convention", "ConvergenceError", "Cosmology", "Difference", "DifferenceOfMatched", "Displacements",
+    "Epoch", "Event", "Exec", "Fft", "FixpairError", "ForceLaw", "Free", "Gravity", "Growth", "Halo", "HaloSums",
+    "HookError", "LETTERS", "Layout", "LengthError", "Library", "Linear", "LinearSource", "MeshSizeError", "Moments",
+    "Multipole", "Normalisation", "NotFiniteError", "NullError", "Nyquist", "OTHERS", "Observe", "Observer", "Order",
+    "Outputs", "OutsideError", "OverdensityDefinition", "OverlapError", "ParallelFor", "Pass", "Phase", "Positions",
+    "Posterior", "Progress", "RangeError", "Ratio", "Realisation", "SIGNATURES", "SamplesError", "Scheme", "ScratchError",
+    "Second", "Selection", "Shape", "ShapeRow", "SingularError", "SizeError", "Space", "Species", "Spectrum", "Sphere",
+    "Status", "StepFactors", "Stepper", "Stopped", "Structure", "Sum", "Suppression", "SuppressionFit", "TWINS",
+    "TableError", "ThreadError", "VersionError", "Window", "address", "error_of",
+]

@@ -95,7 +95,7 @@ class SingularError(FixpairError, ArithmeticError):
     """A matrix is singular or not positive definite, or the data say nothing about a parameter."""
 
 
-CLASSES = {
+CLASSES: dict[int, type[FixpairError]] = {
     Status.NULL: NullError, Status.LENGTH: LengthError, Status.ALIGNMENT: AlignmentError, Status.OVERLAP: OverlapError,
     Status.NOT_FINITE: NotFiniteError, Status.MESH_SIZE: MeshSizeError, Status.BRICK: BrickError, Status.OVERFLOW: SizeError,
     Status.TABLE: TableError, Status.RANGE: RangeError, Status.SCRATCH: ScratchError, Status.HOOK: HookError,

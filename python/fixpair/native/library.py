@@ -2,6 +2,8 @@
 
 import ctypes
 import functools
+from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
 
 from .errors import error_of
 from .prototypes import LETTERS, OTHERS, SIGNATURES
@@ -30,6 +32,10 @@ class Library:
             self._bind(name, result, signature, self._plain)
         for name, signature in SIGNATURES.items():
             self._bind(name, ctypes.c_int32, signature, self._checked)
+
+    if TYPE_CHECKING:
+        # Type checkers do not see what the constructor binds.
+        def __getattr__(self, name: str) -> Callable[..., Any]: ...
 
     def _bind(self, name, result, signature, call):
         function = getattr(self.shared, "fixpair_" + name)

@@ -1,6 +1,5 @@
 """From particles to meshes and back, ghost planes, interlacing."""
 
-from typing import Optional
 
 import numpy as np
 
@@ -12,8 +11,8 @@ from ..threads import current
 from ..workspace import scratch
 
 
-def deposit(mesh: np.ndarray, position: Particles, box_size: float, *, weights: Optional[np.ndarray] = None,
-            window: int = Window.CIC, shift: float = 0.0, brick: Optional[native.Structure] = None) -> np.ndarray:
+def deposit(mesh: np.ndarray, position: Particles, box_size: float, *, weights: np.ndarray | None = None,
+            window: int = Window.CIC, shift: float = 0.0, brick: native.Structure | None = None) -> np.ndarray:
     """Adds the masses of particles to cells: mesh_c += sum_i w_i W(x_c - x_i), W the product of B-splines of a :class:`~fixpair.Window`.
 
     mesh: real numbers (n, n, n), or memory of the brick; added to, so begin with zeros. position: wrapped into the box. weights: one a
@@ -27,28 +26,28 @@ def deposit(mesh: np.ndarray, position: Particles, box_size: float, *, weights: 
     if weights is not None:
         stride, real = strided(weights, "weights")
         same(where.real, real, "weights")
-        if len(weights) != places.count:
-            raise ValueError(f"weights must be {places.count}, not {len(weights)}")
-    with scratch(twin("deposit_scratch", where.real), where.brick, places.count, window) as (memory, size):
+        if len(weights) != places.particles:
+            raise ValueError(f"weights must be {places.particles}, not {len(weights)}")
+    with scratch(twin("deposit_scratch", where.real), where.brick, places.particles, window) as (memory, size):
         twin("deposit", where.real)(where.start, where.length, where.brick, places.structure, weights, stride, box_size, window,
                                     shift, memory, size, current())
     return mesh
 
 
 def read_out(mesh: np.ndarray, position: Particles, box_size: float, *, window: int = Window.CIC, shift: float = 0.0,
-             out: Optional[np.ndarray] = None, brick: Optional[native.Structure] = None) -> np.ndarray:
+             out: np.ndarray | None = None, brick: native.Structure | None = None) -> np.ndarray:
     """What a mesh is worth at particles: value_i = sum_c W(x_c - x_i) mesh_c, the adjoint of :func:`deposit`.
 
     out: one number a particle, any stride; new if None.
     """
     where, places = view(mesh, brick, Space.CONFIGURATION, "mesh"), triples(position, "position")
     same(where.real, places.real, "position")
-    out = np.empty(places.count, REALS[where.real]) if out is None else out
+    out = np.empty(places.particles, REALS[where.real]) if out is None else out
     stride, real = strided(out, "out", write=True)
     same(where.real, real, "out")
-    if len(out) != places.count:
-        raise ValueError(f"out must have room for {places.count} values, not {len(out)}")
-    with scratch(twin("read_out_scratch", where.real), where.brick, places.count, window) as (memory, size):
+    if len(out) != places.particles:
+        raise ValueError(f"out must have room for {places.particles} values, not {len(out)}")
+    with scratch(twin("read_out_scratch", where.real), where.brick, places.particles, window) as (memory, size):
         twin("read_out", where.real)(out, stride, where.start, where.length, where.brick, places.structure, box_size, window, shift,
                                      memory, size, current())
     return out
@@ -73,7 +72,7 @@ def _shared_cells(name: str, target: np.ndarray, target_brick: native.Structure,
     return target
 
 
-def interlace(modes: np.ndarray, shifted: np.ndarray, *, brick: Optional[native.Structure] = None) -> np.ndarray:
+def interlace(modes: np.ndarray, shifted: np.ndarray, *, brick: native.Structure | None = None) -> np.ndarray:
     """Modes become (modes + exp(-i k.H/2) shifted)/2, H = (L/n)(1, 1, 1): odd images cancel (Sefusatti et al. 2016, arXiv:1512.07295).
 
     modes, shifted: of deposits of the same particles with shift 0 and 1/2.

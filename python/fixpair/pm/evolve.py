@@ -1,7 +1,8 @@
 """Runs: particles through a list of scale factors, under their gravity."""
 
 from dataclasses import dataclass
-from typing import Any, Callable, NamedTuple, Optional
+from typing import Any, NamedTuple
+from collections.abc import Callable
 
 import numpy as np
 
@@ -34,7 +35,7 @@ class Displacements:
     """Displacements of both orders, x = q + first + second, when the scale factor was scale_factor: what COLA needs."""
 
     first: Particles
-    second: Optional[Particles]
+    second: Particles | None
     scale_factor: float
 
 
@@ -59,8 +60,8 @@ Observe = Callable[[native.Structure], Any]
 
 
 def evolve(position: Particles, velocity: Particles, gravity: native.Structure, scale_factors: np.ndarray, fft: Transform, *,
-           epoch: Optional[tuple[float, float]] = None, displacements: Optional[Displacements] = None,
-           outputs: Optional[Outputs] = None, observe: Optional[Observe] = None) -> Run:
+           epoch: tuple[float, float] | None = None, displacements: Displacements | None = None,
+           outputs: Outputs | None = None, observe: Observe | None = None) -> Run:
     """Moves particles of one mass, in place, by the particle-mesh method through a list of scale factors.
 
     position: wrapped into [0, L). velocity: peculiar, as initial_conditions makes them. scale_factors: increasing, see
@@ -83,7 +84,7 @@ def evolve(position: Particles, velocity: Particles, gravity: native.Structure, 
     observer = None if observe is None else native.Observer(None, native.Observe(_caught(observe, errors)))
     meshes = [fft.mesh() for _ in range(3)]
     finished = True
-    with fft.use() as hook, scratch(twin("evolve_scratch", fft.real), hook, places.count, gravity.window) as (memory, size):
+    with fft.use() as hook, scratch(twin("evolve_scratch", fft.real), hook, places.particles, gravity.window) as (memory, size):
         try:
             twin("evolve", fft.real)(places.structure, speed.structure, at, gravity, psi, steps, steps.size, written, *meshes,
                                      fft.length, hook, memory, size, observer, current())

@@ -1,6 +1,6 @@
 """Forces on a mesh: what the modes of the density contrast are multiplied by."""
 
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
@@ -28,7 +28,7 @@ class ForceLaw(Members, native.ForceLaw):
 
 
 def forces(x: np.ndarray, y: np.ndarray, z: np.ndarray, box_size: float, mass: float, *,
-           law: Optional[native.Structure] = None, brick: Optional[native.Structure] = None) -> None:
+           law: native.Structure | None = None, brick: native.Structure | None = None) -> None:
     """From modes of the density in x to modes of F = -grad inverse-Laplacian delta, all components in one pass.
 
     x: complex numbers (n, n, n/2 + 1), the forward transform of deposited weights, replaced by F_x; y, z: written. mass: the sum of all
@@ -42,8 +42,8 @@ def forces(x: np.ndarray, y: np.ndarray, z: np.ndarray, box_size: float, mass: f
                                       box_size, mass, memory, size, current())
 
 
-def force(density: np.ndarray, axis: int, box_size: float, mass: float, *, law: Optional[native.Structure] = None,
-          out: Optional[np.ndarray] = None, brick: Optional[native.Structure] = None) -> np.ndarray:
+def force(density: np.ndarray, axis: int, box_size: float, mass: float, *, law: native.Structure | None = None,
+          out: np.ndarray | None = None, brick: native.Structure | None = None) -> np.ndarray:
     """One component of :func:`forces`, the same bits, to another mesh, laid out as density is; new if None."""
     start = view(density, brick, Space.FOURIER, "density")
     if out is None:
@@ -56,8 +56,8 @@ def force(density: np.ndarray, axis: int, box_size: float, mass: float, *, law: 
     return out
 
 
-def potential(modes: np.ndarray, box_size: float, mass: float, *, law: Optional[native.Structure] = None,
-              brick: Optional[native.Structure] = None) -> np.ndarray:
+def potential(modes: np.ndarray, box_size: float, mass: float, *, law: native.Structure | None = None,
+              brick: native.Structure | None = None) -> np.ndarray:
     """The inverse Laplacian of delta in place, in the unit of L^2: the peculiar potential is 3/2 Omega_m H0^2/a times it."""
     where = view(modes, brick, Space.FOURIER, "modes", write=True)
     with scratch(library.force_scratch, where.brick.n) as (memory, size):

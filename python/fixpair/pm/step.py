@@ -1,6 +1,6 @@
 """Kick, drift, and steps in time."""
 
-from typing import Optional, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,9 +13,9 @@ from ..workspace import scratch
 
 
 def kick(velocity: Particles, position: Particles, force: Sequence[np.ndarray], box_size: float, *, keep: float = 1.0,
-         factor: float = 1.0, first: float = 0.0, second: float = 0.0, psi1: Optional[Particles] = None,
-         psi2: Optional[Particles] = None, window: int = Window.CIC, shift: float = 0.0,
-         brick: Optional[native.Structure] = None) -> None:
+         factor: float = 1.0, first: float = 0.0, second: float = 0.0, psi1: Particles | None = None,
+         psi2: Particles | None = None, window: int = Window.CIC, shift: float = 0.0,
+         brick: native.Structure | None = None) -> None:
     """u_i <- keep u_i + factor F(x_i) + first psi1_i + second psi2_i, in place, F read out of three meshes as read_out does.
 
     Peculiar velocities go from a0 to a1 with f = :func:`kick_factors` and H0 (100 for km/s and Mpc/h): keep = a0/a1, factor = f.factor H0/a1,
@@ -28,13 +28,13 @@ def kick(velocity: Particles, position: Particles, force: Sequence[np.ndarray], 
     same(speed.real, meshes[0].real, "force")
     length = alike(meshes, names)
     displacements = [optional_triples(psi, name, speed) for psi, name in ((psi1, "psi1"), (psi2, "psi2"))]
-    with scratch(twin("kick_scratch", speed.real), meshes[0].brick, places.count, window) as (memory, size):
+    with scratch(twin("kick_scratch", speed.real), meshes[0].brick, places.particles, window) as (memory, size):
         twin("kick", speed.real)(speed.structure, places.structure, *(mesh.start for mesh in meshes), length, meshes[0].brick, box_size,
                                  window, shift, keep, factor, first, second, *displacements, memory, size, current())
 
 
 def drift(position: Particles, velocity: Particles, box_size: float, *, factor: float = 1.0, first: float = 0.0,
-          second: float = 0.0, psi1: Optional[Particles] = None, psi2: Optional[Particles] = None) -> None:
+          second: float = 0.0, psi1: Particles | None = None, psi2: Particles | None = None) -> None:
     """x_i <- x_i + factor u_i + first psi1_i + second psi2_i, in place, wrapped into [0, L).
 
     With f = :func:`drift_factors` and peculiar velocities of the time `at`: factor = f.factor at/H0, and for COLA first = f.first/D, second =

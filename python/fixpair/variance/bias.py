@@ -1,7 +1,8 @@
 """Bias with local primordial non-Gaussianity, and what spectra say of it."""
 
 import ctypes
-from typing import Any, NamedTuple, Optional, Sequence
+from typing import Any, NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -111,13 +112,13 @@ class Likelihood:
         library.likelihood_chi_squared(chi_squared, self.structure, bias)
         return chi_squared.value
 
-    def fit(self, free: int = Free.B_G | Free.F_NL, start: Optional[native.Structure] = None) -> BiasFit:
+    def fit(self, free: int = Free.B_G | Free.F_NL, start: native.Structure | None = None) -> BiasFit:
         """The best parameters. start: those that are not free, and a place to begin; Bias() if None."""
         found = native.BiasFit()
         library.fit_bias(found, self.structure, start or Bias(), free)
         return _fit(found)
 
-    def posterior(self, free: int = Free.B_G | Free.F_NL, start: Optional[native.Structure] = None, *, points: int = 128,
+    def posterior(self, free: int = Free.B_G | Free.F_NL, start: native.Structure | None = None, *, points: int = 128,
                   probability: float = 0.68) -> tuple[BiasFit, list[native.Structure]]:
         """The fit, and the posterior of each free parameter in the order b_g, p, f_NL, of flat priors.
 
@@ -130,14 +131,14 @@ class Likelihood:
                                    size)
         return _fit(found), list(posteriors)
 
-    def range(self, free: int = Free.B_G | Free.F_NL, start: Optional[native.Structure] = None) -> np.ndarray:
+    def range(self, free: int = Free.B_G | Free.F_NL, start: native.Structure | None = None) -> np.ndarray:
         """(parameters, 2): lowest and highest of each free parameter, beyond which its density is below exp(-12.5) of the peak."""
         ranges = np.empty((bin(free).count("1"), 2))
         library.bias_range(ranges, len(ranges), self.structure, start or Bias(), free)
         return ranges
 
     def grid(self, ranges: Any, points: Sequence[int], free: int = Free.B_G | Free.F_NL,
-             fixed: Optional[native.Structure] = None) -> np.ndarray:
+             fixed: native.Structure | None = None) -> np.ndarray:
         """chi^2 on a grid of uniform steps, ends included, the second free parameter along the last axis."""
         ranges = vector(ranges, "ranges", shape=(len(points), 2))
         out = np.empty(tuple(points))

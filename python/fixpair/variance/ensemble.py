@@ -1,7 +1,7 @@
 """Ensembles of estimates, pairs, jackknife and bootstrap."""
 
 import ctypes
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
@@ -72,15 +72,15 @@ class Ensemble:
         function(out, out.size, self.state, self.state.size)
         return out
 
-    def covariance(self, rows: Optional[slice] = None, columns: Optional[slice] = None) -> np.ndarray:
+    def covariance(self, rows: slice | None = None, columns: slice | None = None) -> np.ndarray:
         """The covariance, with N - 1, or a block of it: of the values of one slice with those of another, both of step 1."""
         return self._block(library.ensemble_covariance, rows, columns)
 
-    def correlation(self, rows: Optional[slice] = None, columns: Optional[slice] = None) -> np.ndarray:
+    def correlation(self, rows: slice | None = None, columns: slice | None = None) -> np.ndarray:
         """The same of correlation coefficients."""
         return self._block(library.ensemble_correlation, rows, columns)
 
-    def _block(self, function: Any, rows: Optional[slice], columns: Optional[slice]) -> np.ndarray:
+    def _block(self, function: Any, rows: slice | None, columns: slice | None) -> np.ndarray:
         ranges = [range(self.values)[each or slice(None)] for each in (rows, columns)]
         if any(each.step != 1 for each in ranges):
             raise ValueError("rows and columns must be slices of step 1")
@@ -110,7 +110,7 @@ def sigma_per_simulation(deviation: Any, estimates: int, simulations: int = 1) -
     return sigma, error
 
 
-def bootstrap_indices(estimates: int, seed: int, replicate: int, count: Optional[int] = None) -> np.ndarray:
+def bootstrap_indices(estimates: int, seed: int, replicate: int, count: int | None = None) -> np.ndarray:
     """Which estimates make up a replicate, uint64: a function of seed, replicate and place alone, the same for matched ensembles."""
     indices = np.empty(estimates if count is None else count, np.uint64)
     library.bootstrap_indices(indices, indices.size, estimates, seed, replicate)

@@ -1,7 +1,7 @@
 """Matched simulations, whose seeds are the same, and control variates."""
 
 import ctypes
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
@@ -49,7 +49,7 @@ def universality(b_g: float, b_g_error: float, f_nl: float, f_nl_error: float, f
     return p.value, error.value
 
 
-def control_variates(y: Any, c: Any, mu: Any, *, error: Any = None, beta: Optional[float] = None) -> np.ndarray:
+def control_variates(y: Any, c: Any, mu: Any, *, error: Any = None, beta: float | None = None) -> np.ndarray:
     """<y> - beta (<c> - mu): the expectation of y from few simulations, by controls c of the same seeds whose expectation mu is known.
 
     y, c: (N, values). error: standard error of mu, None where it is exact. beta: a number; None for cov(y, c)/(var(c) + N error^2), of least

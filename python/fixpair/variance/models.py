@@ -1,6 +1,6 @@
 """Models of scatter: Eq. sigma_th and Eq. sigma_fix of Avila & Adame 2022 (arXiv:2204.11103)."""
 
-from typing import Any, Optional
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +17,7 @@ class Suppression(Members, native.Suppression):
         super().__init__(cosmic_variance, softening, shot_noise)
 
 
-def vectors(length: Optional[int] = None, **values: Any) -> list[np.ndarray]:
+def vectors(length: int | None = None, **values: Any) -> list[np.ndarray]:
     """Several arrays of one length."""
     found: list[np.ndarray] = []
     for name, each in values.items():
