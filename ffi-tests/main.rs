@@ -5,6 +5,7 @@
 //! libraries and the programs, [`programs`] runs them. [`pages`] compiles the code of a page,
 //! [`five_minutes`] runs that of another.
 
+mod examples_of_functions;
 mod five_minutes;
 mod header;
 mod native;
