@@ -10,6 +10,7 @@ pages become references, links to other files their text.
 
 import re
 import sys
+import textwrap
 from pathlib import Path
 
 TITLE = re.compile(r"/\*\n \* (?P<title>[^\n]+)\n \* =+\n \*/\n")
@@ -65,25 +66,23 @@ class Header:
 
     def plain(self, lines):
         """Paragraphs, with what is indented kept as it stands."""
-        result, verbatim = [], False
+        result, kept = [], []
+
+        def flush():
+            if kept:
+                result.extend(["@verbatim", *textwrap.dedent("\n".join(kept)).rstrip("\n").split("\n"), "@endverbatim"])
+                kept.clear()
+
         for line in lines:
             item = re.match(r" {1,2}(\d+)\. +(.*)", line)
-            deeper = line.startswith("   ") and not self.in_list
-            if verbatim and line.strip() and not deeper:
-                result.append("@endverbatim")
-                verbatim = False
-            if deeper and not verbatim:
-                result.append("@verbatim")
-                verbatim = True
-            if item:
-                self.in_list = True
-                result.append(f"{item.group(1)}. {self.prose(item.group(2))}")
-            elif verbatim:
-                result.append(line)
-            else:
-                self.in_list = self.in_list and (not line or line.startswith("   "))
-                result.append(self.prose(line.rstrip()))
-        return result + ["@endverbatim"] * verbatim
+            self.in_list = bool(item) or self.in_list and (not line or line.startswith("   "))
+            if line.startswith("   ") and not self.in_list or kept and not line.strip():
+                kept.append(line)
+                continue
+            flush()
+            result.append(f"{item[1]}. {self.prose(item[2])}" if item else self.prose(line.rstrip()))
+        flush()
+        return result
 
     def entry(self, direction, text, names):
         """One argument, or several."""
@@ -127,7 +126,7 @@ class Header:
         text = re.sub(r"^ *\* ?", "", match["text"].strip("\n "), flags=re.M)
         head = "@file\n" if text.startswith("fixpair.h: ") else ""
         block = head + self.block(text, self.arguments(match.end()))
-        return f"{indent}/**\n" + "\n".join(f"{indent} * {line}".rstrip() for line in block.split("\n")) + f"\n{indent} */"
+        return f"{indent}/**\n{block}\n{indent}*/"
 
     def documented(self):
         """Everything, in groups: constants, structures, and a group for each title."""

@@ -8,6 +8,7 @@
 mod abi;
 mod abi_header;
 mod abi_structs;
+mod examples_of_functions;
 mod five_minutes;
 mod freestanding;
 mod header;

@@ -24,6 +24,11 @@ pub enum Space {
 
 impl Space {
     /// Reals in one element: 1 or 2.
+    ///
+    /// ```
+    /// # use fixpair::mesh::Space;
+    /// assert_eq!((Space::Configuration.width(), Space::Fourier.width()), (1, 2)); // reals an element
+    /// ```
     #[must_use]
     #[inline]
     pub const fn width(self) -> usize {
@@ -63,6 +68,16 @@ impl Brick {
     /// # Errors
     /// `MeshSize` if n is zero or odd, `Overflow` if it is above [`LARGEST_SIDE`] or if elements of 16 bytes from the brick's first to
     /// its last do not fit the address space, `Brick` if the other invariants of this module fail.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    ///
+    /// // A pencil of a mesh of 64^3 modes: all i, 16 j, 11 l.
+    /// let pencil = Brick::general(64, Space::Fourier, [0, 32, 0], [64, 16, 11], [16 * 11, 11, 1])?;
+    /// assert_eq!(pencil.elements(), 64 * 16 * 11);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn general(
         n: usize,
         space: Space,
@@ -100,6 +115,15 @@ impl Brick {
     ///
     /// # Errors
     /// As [`Brick::general`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    ///
+    /// let modes = Brick::whole(64, Space::Fourier)?; // FFTW's r2c in place
+    /// assert_eq!(modes.reals(), 64 * 64 * 66);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn whole(n: usize, space: Space) -> Result<Self> {
         Self::slab(n, space, 0, n)
     }
@@ -109,6 +133,15 @@ impl Brick {
     ///
     /// # Errors
     /// As [`Brick::general`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    ///
+    /// let padded = Brick::whole_padded(64, Space::Fourier, 4)?; // 4 modes after each plane
+    /// assert_eq!(padded.stride(), [64 * 33 + 4, 33, 1]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn whole_padded(n: usize, space: Space, padding: usize) -> Result<Self> {
         let mut brick = Self::whole(n, space)?;
         brick.stride[0] = padding
@@ -122,6 +155,15 @@ impl Brick {
     ///
     /// # Errors
     /// As [`Brick::general`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    ///
+    /// let mine = Brick::slab(64, Space::Configuration, 16, 8)?; // planes 16 to 23, as FFTW-MPI deals them
+    /// assert_eq!((mine.start()[0], mine.count()[0]), (16, 8));
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn slab(n: usize, space: Space, first: usize, planes: usize) -> Result<Self> {
         let row = Self::row(n, space)?;
         let last = if space == Space::Configuration { n } else { n / 2 + 1 };
@@ -132,6 +174,15 @@ impl Brick {
     ///
     /// # Errors
     /// As [`Brick::general`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::mesh::Brick;
+    ///
+    /// let mine = Brick::transposed_slab(64, 16, 8)?; // FFTW_MPI_TRANSPOSED_OUT: rows j = 16 to 23
+    /// assert_eq!((mine.start()[1], mine.count()[1]), (16, 8));
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn transposed_slab(n: usize, first: usize, rows: usize) -> Result<Self> {
         let row = Self::row(n, Space::Fourier)?;
         Self::general(n, Space::Fourier, [0, first, 0], [n, rows, row], [row, row * n, 1])
@@ -144,6 +195,13 @@ impl Brick {
     }
 
     /// Cells or modes on a side of the whole mesh.
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert_eq!(brick.n(), 64);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn n(&self) -> usize {
@@ -151,6 +209,13 @@ impl Brick {
     }
 
     /// Cells or modes?
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert_eq!(brick.space(), Space::Fourier);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn space(&self) -> Space {
@@ -158,6 +223,13 @@ impl Brick {
     }
 
     /// First index on each axis.
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert_eq!(brick.start(), [0, 0, 0]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn start(&self) -> [usize; 3] {
@@ -165,6 +237,13 @@ impl Brick {
     }
 
     /// Elements on each axis.
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert_eq!(brick.count(), [64, 64, 33]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn count(&self) -> [usize; 3] {
@@ -172,6 +251,13 @@ impl Brick {
     }
 
     /// Elements from one index to the next on each axis.
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert_eq!(brick.stride(), [64 * 33, 33, 1]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn stride(&self) -> [usize; 3] {
@@ -179,6 +265,13 @@ impl Brick {
     }
 
     /// Elements on each axis of the whole mesh: (n, n, n) or (n, n, n/2 + 1).
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert_eq!(brick.extent(), [64, 64, 33]); // of the whole mesh
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn extent(&self) -> [usize; 3] {
@@ -189,24 +282,52 @@ impl Brick {
     }
 
     /// Does it hold every element of the mesh?
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert!(brick.is_whole() && !Brick::slab(64, Space::Fourier, 0, 8)?.is_whole());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.count == self.extent()
     }
 
     /// Does it hold nothing?
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert!(!brick.is_empty() && Brick::slab(64, Space::Fourier, 0, 0)?.is_empty());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.count.contains(&0)
     }
 
     /// Elements that it holds.
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert_eq!(brick.elements(), 64 * 64 * 33);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn elements(&self) -> usize {
         self.count[0] * self.count[1] * self.count[2]
     }
 
     /// Reals from the first element to the end of the last: the least length of its array.
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert_eq!(brick.reals(), 2 * brick.elements());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn reals(&self) -> usize {
         if self.is_empty() {
@@ -217,6 +338,13 @@ impl Brick {
     }
 
     /// The axes, innermost first.
+    ///
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert_eq!(brick.axes_by_stride(), [2, 1, 0]); // the fastest first
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn axes_by_stride(&self) -> [usize; 3] {
         let mut axes = [2, 1, 0];
@@ -226,6 +354,12 @@ impl Brick {
 
     /// The signed mode number of a Fourier index on axis 0 or 1: 0, 1, ..., n/2, -(n/2-1), ..., -1. (On axis 2 the
     /// index is the mode number.)
+    ///
+    /// ```
+    /// use fixpair::mesh::Brick;
+    ///
+    /// assert_eq!([0, 1, 4, 5, 7].map(|i| Brick::mode(8, i)), [0, 1, 4, -3, -1]);
+    /// ```
     #[must_use]
     #[inline]
     pub const fn mode(n: usize, index: usize) -> i64 {
@@ -236,6 +370,14 @@ impl Brick {
     ///
     /// # Errors
     /// See above.
+    ///
+    /// # Example
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert!(brick.check_length(&[0.0_f32; 8]).is_err());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn check_length<T>(&self, data: &[T]) -> Result<()> {
         if data.len() < self.reals() { Err(Error::Length) } else { Ok(()) }
     }
@@ -244,6 +386,14 @@ impl Brick {
     ///
     /// # Errors
     /// See above.
+    ///
+    /// # Example
+    /// ```
+    /// # use fixpair::mesh::{Brick, Space};
+    /// let brick = Brick::whole(64, Space::Fourier)?;
+    /// assert!(brick.check_space(Space::Fourier).is_ok() && brick.check_space(Space::Configuration).is_err());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn check_space(&self, space: Space) -> Result<()> {
         if self.space == space { Ok(()) } else { Err(Error::Brick) }
     }

@@ -27,6 +27,15 @@ impl Layout {
     ///
     /// # Errors
     /// `Overflow` if the bytes do not fit the address space.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::scratch::Layout;
+    ///
+    /// let layout = Layout::EMPTY.and::<f64>(5)?.and::<u32>(3)?;
+    /// assert_eq!((layout.size, layout.align), (128, 64)); // each in whole cache lines
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn and<T: Plain>(self, count: usize) -> Result<Self> {
         let bytes = count.checked_mul(size_of::<T>()).and_then(|b| b.checked_next_multiple_of(ALIGN));
         let size = bytes.and_then(|b| b.checked_add(self.size)).ok_or(Error::Overflow)?;
@@ -58,6 +67,19 @@ impl<'a> Arena<'a> {
     ///
     /// # Errors
     /// `Scratch` if it is shorter, `Alignment` if it does not begin on a multiple of `layout.align`.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::scratch::{Arena, Layout};
+    /// # #[repr(align(64))] struct Memory([u8; 128]);
+    /// # let mut memory = Memory([0; 128]);
+    /// # let bytes = &mut memory.0;
+    ///
+    /// let layout = Layout::EMPTY.and::<f64>(5)?;
+    /// assert!(Arena::new(&mut bytes[..8], layout).is_err()); // too short
+    /// assert!(Arena::new(bytes, layout).is_ok());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(memory: &'a mut [u8], layout: Layout) -> Result<Self> {
         if memory.len() < layout.size {
             return Err(Error::Scratch);
@@ -72,6 +94,19 @@ impl<'a> Arena<'a> {
     ///
     /// # Errors
     /// As [`Arena::take`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::scratch::{Arena, Layout};
+    /// # #[repr(align(64))] struct Memory([u8; 128]);
+    /// # let mut memory = Memory([0; 128]);
+    /// # let bytes = &mut memory.0;
+    ///
+    /// let mut arena = Arena::new(bytes, Layout::EMPTY.and::<f64>(5)?.and::<f64>(2)?)?;
+    /// let [five, two] = arena.take_each::<f64, 2>([5, 2])?;
+    /// assert_eq!((five.len(), two.len()), (5, 2));
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn take_each<T: Plain, const K: usize>(&mut self, counts: [usize; K]) -> Result<[&'a mut [T]; K]> {
         let mut failure = None;
         let pieces = counts.map(|count| match self.take(count) {
@@ -88,6 +123,19 @@ impl<'a> Arena<'a> {
     ///
     /// # Errors
     /// `Scratch` if the memory is used up.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::scratch::{Arena, Layout};
+    /// # #[repr(align(64))] struct Memory([u8; 128]);
+    /// # let mut memory = Memory([0; 128]);
+    /// # let bytes = &mut memory.0;
+    ///
+    /// let mut arena = Arena::new(bytes, Layout::EMPTY.and::<f64>(5)?.and::<u32>(3)?)?;
+    /// let (numbers, counts) = (arena.take::<f64>(5)?, arena.take::<u32>(3)?);
+    /// assert_eq!((numbers.len(), counts.len()), (5, 3));
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn take<T: Plain>(&mut self, count: usize) -> Result<&'a mut [T]> {
         let bytes = Layout::EMPTY.and::<T>(count)?.size;
         let rest = core::mem::take(&mut self.rest);

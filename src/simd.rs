@@ -11,6 +11,13 @@ pub enum Simd {
 
 impl Simd {
     /// The best path of this processor. Costs a few microseconds on a virtual machine: ask once a kernel, not once a row.
+    ///
+    /// ```
+    /// use fixpair::simd::Simd;
+    ///
+    /// println!("{:?}", Simd::detect()); // what kernels use unless told otherwise
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]

@@ -78,12 +78,24 @@ impl Error {
     ];
 
     /// The number that C sees.
+    ///
+    /// ```
+    /// use fixpair::status::Error;
+    ///
+    /// assert_eq!(Error::MeshSize.code(), -6); // as in C
+    /// ```
     #[must_use]
     pub const fn code(self) -> i32 {
         self as i32
     }
 
     /// What went wrong and what to do about it: one sentence, NUL-terminated for C.
+    ///
+    /// ```
+    /// use fixpair::status::Error;
+    ///
+    /// assert!(!Error::MeshSize.message().to_bytes().is_empty());
+    /// ```
     #[must_use]
     pub const fn message(self) -> &'static core::ffi::CStr {
         match self {

@@ -21,12 +21,32 @@ pub struct Run {
 }
 
 /// Chunks of a brick.
+///
+/// ```
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::walk::chunks;
+///
+/// assert!(chunks(&Brick::whole(64, Space::Fourier)?) >= 1); // whatever the threads
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 #[must_use]
 pub fn chunks(brick: &Brick) -> usize {
     if brick.is_empty() { 0 } else { brick.count().at(brick.axes_by_stride()[2]) }
 }
 
 /// Calls `visit` for the runs of one chunk, in order of their address.
+///
+/// ```
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::walk::{chunks, runs};
+///
+/// let (brick, mut elements) = (Brick::whole(8, Space::Fourier)?, 0);
+/// for chunk in 0..chunks(&brick) {
+///     runs(&brick, chunk, |run| elements += run.length);
+/// }
+/// assert_eq!(elements, brick.elements());
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn runs(brick: &Brick, chunk: usize, mut visit: impl FnMut(Run)) {
     let (start, count, stride) = (brick.start(), brick.count(), brick.stride());
     let axes = brick.axes_by_stride();

@@ -44,6 +44,13 @@ pub struct Cosmology {
 
 impl Cosmology {
     /// Matter and a cosmological constant, flat and without radiation.
+    ///
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    ///
+    /// let planck = Cosmology::flat(0.31, 0.049, 0.677, 0.967);
+    /// assert_eq!(planck.omega_de, 0.69);
+    /// ```
     #[must_use]
     pub const fn flat(omega_m: f64, omega_b: f64, h: f64, n_s: f64) -> Self {
         Self {
@@ -61,18 +68,39 @@ impl Cosmology {
 
     /// The GOLIAT simulations (Avila & Adame 2022, arXiv:2204.11103): Om = 0.27, Ode = 0.73, h = 0.7, n_s = 0.96; sigma8 is 0.8.
     /// Their Ob = 0.044 is that of the spectrum in `examples/data`.
+    ///
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    ///
+    /// assert_eq!(Cosmology::goliat().omega_m, 0.27);
+    /// ```
     #[must_use]
     pub const fn goliat() -> Self {
         Self { omega_de: 0.73, ..Self::flat(0.27, 0.044, 0.7, 0.96) }
     }
 
     /// Curvature today, Ok = 1 - Om - Ode - Or: positive where the universe is open.
+    ///
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    ///
+    /// let open = Cosmology { omega_de: 0.0, ..Cosmology::goliat() };
+    /// assert!((open.curvature() - 0.73).abs() < 1e-15);
+    /// ```
     #[must_use]
     pub fn curvature(&self) -> f64 {
         1.0 - self.omega_m - self.omega_de - self.omega_r
     }
 
     /// The same universe with its radiation counted as dark energy, so that curvature stays.
+    ///
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    ///
+    /// let hot = Cosmology { omega_r: 8e-5, ..Cosmology::goliat() };
+    /// let cold = hot.without_radiation();
+    /// assert!(cold.omega_r == 0.0 && (cold.curvature() - hot.curvature()).abs() < 1e-15);
+    /// ```
     #[must_use]
     pub fn without_radiation(&self) -> Self {
         Self { omega_de: self.omega_de + self.omega_r, omega_r: 0.0, ..*self }
@@ -85,6 +113,13 @@ impl Cosmology {
     /// 0.01 <= h <= 100, |n_s| <= 10, |w0| and |wa| <= 10, 0 < t_cmb <= 100; or if E^2, anywhere in 1e-10 <= a <= 1, is less than 3% of the sum of its terms' sizes (expansion stops or nearly so); or
     /// if dark energy and curvature are more than 1% of E^2 at a = 1e-6. (w0 + wa < -0.3 and Om of order 1 are safe.)
     /// Cost: 15 microseconds.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    ///
+    /// assert!(Cosmology { omega_m: f64::NAN, ..Cosmology::goliat() }.check().is_err());
+    /// ```
     pub fn check(&self) -> Result<()> {
         let all = [
             self.omega_m,
@@ -144,6 +179,14 @@ impl Cosmology {
     ///
     /// # Errors
     /// As [`Cosmology::check`]; `NotFinite` if a is; `Range` if a is not in 1e-10 ..= 10 or the universe does not expand from 1 to a.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    ///
+    /// assert!((Cosmology::goliat().expansion(0.5)? - (0.27_f64 * 8.0 + 0.73).sqrt()).abs() < 1e-14);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn expansion(&self, a: f64) -> Result<f64> {
         self.check_at(a)?;
         Ok(libm::sqrt(self.e_squared(a)))
@@ -153,6 +196,15 @@ impl Cosmology {
     ///
     /// # Errors
     /// As [`Cosmology::expansion`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    ///
+    /// let slope = Cosmology::flat(1.0, 0.05, 0.7, 1.0).expansion_slope(0.5)?; // dlnE/dlna of matter alone
+    /// assert!((slope + 1.5).abs() < 1e-14);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn expansion_slope(&self, a: f64) -> Result<f64> {
         self.check_at(a)?;
         Ok(self.slope_and_matter(a).0)
@@ -162,6 +214,15 @@ impl Cosmology {
     ///
     /// # Errors
     /// As [`Cosmology::expansion`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    ///
+    /// let at_z_1 = Cosmology::goliat().matter_fraction(0.5)?; // Omega_m(a) = Omega_m a^-3/E^2
+    /// assert!((at_z_1 - 2.16 / 2.89).abs() < 1e-14);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn matter_fraction(&self, a: f64) -> Result<f64> {
         self.check_at(a)?;
         Ok(self.slope_and_matter(a).1)
@@ -215,6 +276,14 @@ impl Cosmology {
 ///
 /// # Errors
 /// `NotFinite`; `Range` unless `t_cmb` and `h` are positive and `n_eff` is not negative.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::radiation_density;
+///
+/// assert!((radiation_density(2.7255, 3.046, 0.7)? - 8.54e-5).abs() < 1e-7);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn radiation_density(t_cmb: f64, n_eff: f64, h: f64) -> Result<f64> {
     if !(t_cmb.is_finite() && n_eff.is_finite() && h.is_finite()) {
         return Err(Error::NotFinite);

@@ -85,6 +85,16 @@ impl EisensteinHu {
     ///
     /// # Errors
     /// As [`Cosmology::check`]; `Range` if Om h^2 is not in 0.005 ..= 2, or if wiggles are asked for and Ob is less than 1e-6 Om.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::{Cosmology, EisensteinHu, Wiggles};
+    ///
+    /// let smooth = EisensteinHu::new(&Cosmology::goliat(), Wiggles::Without)?;
+    /// let wiggly = EisensteinHu::new(&Cosmology::goliat(), Wiggles::With)?;
+    /// assert!((smooth.transfer(0.1)? / wiggly.transfer(0.1)? - 1.0).abs() < 0.1);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(cosmology: &Cosmology, wiggles: Wiggles) -> Result<Self> {
         cosmology.check()?;
         let Cosmology { omega_m, omega_b, h, t_cmb, .. } = *cosmology;
@@ -105,6 +115,15 @@ impl EisensteinHu {
     ///
     /// # Errors
     /// `NotFinite` if k is; `Range` if k is not positive.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::{Cosmology, EisensteinHu, Wiggles};
+    ///
+    /// let fit = EisensteinHu::new(&Cosmology::goliat(), Wiggles::With)?;
+    /// assert!((fit.transfer(1e-5)? - 1.0).abs() < 1e-3 && fit.transfer(1.0)? < 0.01);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn transfer(&self, k: f64) -> Result<f64> {
         check_wavenumber(k)?;
         Ok(self.transfer_unchecked(k))

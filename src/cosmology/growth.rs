@@ -60,6 +60,15 @@ pub struct Growth {
 /// As [`Cosmology::check`]; `NotFinite` if a is; `Range` unless 1e-5 <= a <= 10 and the universe expands until a.
 ///
 /// Cost: 0.4 ms.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Cosmology, growth};
+///
+/// let at_z_1 = growth(&Cosmology::goliat(), 0.5)?;
+/// assert!((at_z_1.d - 0.6228).abs() < 1e-4 && (at_z_1.d2 / at_z_1.d.powi(2) + 3.0 / 7.0).abs() < 2e-3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn growth(cosmology: &Cosmology, a: f64) -> Result<Growth> {
     let mut out = [Growth::default()];
     growth_many(cosmology, &[a], &mut out)?;
@@ -72,6 +81,16 @@ pub fn growth(cosmology: &Cosmology, a: f64) -> Result<Growth> {
 /// As [`growth`]; `Length` if `out` is not as long as `a`. `out` is then untouched.
 ///
 /// Cost: 0.4 ms, and 2 microseconds a scale factor.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Cosmology, Growth, growth_many};
+///
+/// let mut found = [Growth::default(); 2];
+/// growth_many(&Cosmology::goliat(), &[0.5, 1.0], &mut found)?; // one integration for both
+/// assert!((found[1].d - 1.0).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn growth_many(cosmology: &Cosmology, a: &[f64], out: &mut [Growth]) -> Result<()> {
     cosmology.check()?;
     if a.len() != out.len() {
@@ -121,6 +140,15 @@ pub fn growth_many(cosmology: &Cosmology, a: &[f64], out: &mut [Growth]) -> Resu
 /// As [`Cosmology::check`].
 ///
 /// Cost: 0.4 ms.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Cosmology, g_ratio};
+///
+/// let lss_over_cmb = g_ratio(&Cosmology::goliat())?; // f_NL(LSS)/f_NL(CMB)
+/// assert!((lss_over_cmb - 1.316).abs() < 1e-3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn g_ratio(cosmology: &Cosmology) -> Result<f64> {
     let cosmology = cosmology.without_radiation();
     cosmology.check()?;

@@ -15,6 +15,14 @@ const PIECE: usize = 4096;
 ///
 /// # Errors
 /// `MeshSize` if n is zero or odd; `Overflow` above [`LARGEST_SIDE`](crate::mesh::LARGEST_SIDE), or if the table does not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::mode_table_length;
+///
+/// assert_eq!(mode_table_length(8)?, 3 * 16 + 1); // |n|^2 = 0 .. 3 (n/2)^2
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn mode_table_length(n: usize) -> Result<usize> {
     check_side(n)?;
     Ok(3 * (n / 2) * (n / 2) + 1)
@@ -27,6 +35,22 @@ pub fn mode_table_length(n: usize) -> Result<usize> {
 /// not positive or a value overflows; `Hook` as [`Exec::parallel_for`]. `out` is untouched by all but the last.
 ///
 /// Cost: 50 ns an entry.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+///
+/// let cosmology = Cosmology::goliat();
+/// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+/// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+/// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+/// use fixpair::cosmology::{mode_table_length, potential_amplitude_table};
+///
+/// let mut table = vec![0.0; mode_table_length(8)?]; // sqrt(P/V)/alpha by |n|^2
+/// potential_amplitude_table(&fixpair::exec::Serial, &poisson, 8, 1000.0, &mut table)?;
+/// assert!(table[0] == 0.0 && table[1] > table[4]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn potential_amplitude_table(
     exec: &dyn Exec,
     poisson: &Poisson<'_>,
@@ -57,6 +81,23 @@ pub fn potential_amplitude_table(
 /// As [`potential_amplitude_table`].
 ///
 /// Cost: 60 ns an entry from tables of P or T, and a binary search whenever k enters another row; 270 ns from Eisenstein & Hu.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+///
+/// let cosmology = Cosmology::goliat();
+/// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+/// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+/// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+/// use fixpair::cosmology::{alpha_table, mode_table_length};
+///
+/// let mut table = vec![0.0; mode_table_length(8)?];
+/// alpha_table(&fixpair::exec::Serial, &poisson, 8, 1000.0, &mut table)?;
+/// let k = std::f64::consts::TAU / 1000.0 * 2.0; // |n|^2 = 4
+/// assert!((table[4] / poisson.alpha(k)? - 1.0).abs() < 1e-6);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn alpha_table(
     exec: &dyn Exec,
     poisson: &Poisson<'_>,

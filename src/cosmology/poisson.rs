@@ -38,6 +38,15 @@ impl TryFrom<i32> for Convention {
 ///
 /// # Errors
 /// As [`growth`](fn@growth).
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Convention, Cosmology, alpha_factor};
+///
+/// let factor = alpha_factor(&Cosmology::goliat(), 0.5, Convention::Cmb)?; // alpha/(k^2 T)
+/// assert!((1e-4 * factor - 1050.4).abs() < 0.1); // at k = 0.01 h/Mpc, z = 1
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn alpha_factor(cosmology: &Cosmology, a: f64, convention: Convention) -> Result<f64> {
     let d = growth(cosmology, a)?.d;
     Ok(factor_today(cosmology, convention)? * d)
@@ -59,6 +68,15 @@ fn factor_today(cosmology: &Cosmology, convention: Convention) -> Result<f64> {
 ///
 /// # Errors
 /// As [`Cosmology::check`]; `NotFinite`; `Range` if `a_s` or `pivot` is not positive or A overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Cosmology, primordial_amplitude};
+///
+/// let amplitude = primordial_amplitude(&Cosmology::goliat(), 2.1e-9, 0.05)?; // A of P = A k^n_s T^2
+/// assert!(amplitude > 1e6);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn primordial_amplitude(cosmology: &Cosmology, a_s: f64, pivot: f64) -> Result<f64> {
     if !(a_s.is_finite() && pivot.is_finite()) {
         return Err(Error::NotFinite);
@@ -90,6 +108,18 @@ impl<'a> Poisson<'a> {
     /// As [`growth`](fn@growth); `Range` if the amplitude of Phi under- or overflows, or if the cosmology's n_s is not the spectrum's.
     ///
     /// Cost: 0.8 ms.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+    /// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+    /// assert!(poisson.alpha(0.01)? > 0.0); // f_NL > 0 raises the power of halos
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(cosmology: &Cosmology, linear: Linear<'a>, a: f64, convention: Convention) -> Result<Self> {
         let growth = growth(cosmology, a)?;
         if linear.n_s() != cosmology.n_s {
@@ -104,24 +134,69 @@ impl<'a> Poisson<'a> {
     }
 
     /// The spectrum of today.
+    ///
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+    /// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+    /// assert_eq!(poisson.linear().n_s(), 0.96);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn linear(&self) -> &Linear<'a> {
         &self.linear
     }
 
     /// Growth at the time of the density.
+    ///
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+    /// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+    /// assert!((poisson.growth().d - 0.6228).abs() < 1e-4);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn growth(&self) -> Growth {
         self.growth
     }
 
     /// alpha(k, a)/(k^2 T(k)) in (Mpc/h)^2.
+    ///
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+    /// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+    /// let k = 0.01;
+    /// assert!((poisson.alpha(k)? / (poisson.factor() * k * k * poisson.linear().transfer(k)?) - 1.0).abs() < 1e-12);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn factor(&self) -> f64 {
         self.factor
     }
 
     /// A_Phi of P_Phi(k) = A_Phi k^(n_s - 4).
+    ///
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+    /// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+    /// assert!(poisson.potential_amplitude() > 0.0); // of P_Phi = A_Phi k^(n_s - 4)
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn potential_amplitude(&self) -> f64 {
         self.potential
@@ -131,6 +206,19 @@ impl<'a> Poisson<'a> {
     ///
     /// # Errors
     /// `NotFinite` if k is; `Range` if k is not positive or alpha overflows.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+    /// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+    /// let ratio = poisson.density_power(0.1)? / poisson.potential_power(0.1)?;
+    /// assert!((poisson.alpha(0.1)?.powi(2) / ratio - 1.0).abs() < 1e-12); // delta = alpha Phi
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn alpha(&self, k: f64) -> Result<f64> {
         check_wavenumber(k)?;
         finite(self.factor * (k * k) * self.linear.transfer(k)?)
@@ -140,6 +228,19 @@ impl<'a> Poisson<'a> {
     ///
     /// # Errors
     /// As [`Poisson::alpha`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+    /// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+    /// let slope = (poisson.potential_power(0.2)? / poisson.potential_power(0.1)?).log2();
+    /// assert!((slope - (0.96 - 4.0)).abs() < 1e-9);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn potential_power(&self, k: f64) -> Result<f64> {
         check_wavenumber(k)?;
         finite(self.potential * libm::pow(k, self.linear.n_s() - 4.0))
@@ -149,6 +250,19 @@ impl<'a> Poisson<'a> {
     ///
     /// # Errors
     /// As [`Poisson::alpha`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Poisson, Wiggles};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let linear = Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?;
+    /// let poisson = Poisson::new(&cosmology, linear, 0.5, Convention::Cmb)?; // z = 1
+    /// let today = poisson.linear().power(0.1)?;
+    /// assert!((poisson.density_power(0.1)? / today - poisson.growth().d.powi(2)).abs() < 1e-12);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn density_power(&self, k: f64) -> Result<f64> {
         finite(self.linear.power(k)? * self.growth.d * self.growth.d)
     }

@@ -78,6 +78,15 @@ impl Interval {
 /// reach it.
 ///
 /// Cost: 21 evaluations of `f` for the first interval and 42 for each halving.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::quadrature::integrate;
+///
+/// let third = integrate(|x| x * x, 0.0, 1.0, 1e-12)?;
+/// assert!((third - 1.0 / 3.0).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn integrate(mut f: impl FnMut(f64) -> f64, from: f64, to: f64, tolerance: f64) -> Result<f64> {
     if !(from.is_finite() && to.is_finite() && (to - from).is_finite()) {
         return Err(Error::NotFinite);

@@ -52,6 +52,17 @@ impl<'a> Species<'a> {
     ///
     /// # Errors
     /// As [`Table::new`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Species;
+    ///
+    /// let k = [1e-4, 0.01, 1.0]; // columns of a Boltzmann code at the time of the particles
+    /// let (matter, density, velocity) = ([6e5, 5e5, 1e3], [5.9e5, 4.8e5, 9e2], [6e5, 5e5, 1e3]);
+    /// let baryons = Species::new(&k, &matter, &density, &velocity, None)?;
+    /// assert!(!baryons.has_own_growth());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(
         k: &'a [f64],
         matter: &'a [f64],
@@ -73,6 +84,16 @@ impl<'a> Species<'a> {
     }
 
     /// Is the linear spectrum to be corrected by T_m/reference?
+    ///
+    /// ```
+    /// use fixpair::cosmology::Species;
+    ///
+    /// let k = [1e-4, 0.01, 1.0]; // columns of a Boltzmann code at the time of the particles
+    /// let (matter, density, velocity) = ([6e5, 5e5, 1e3], [5.9e5, 4.8e5, 9e2], [6e5, 5e5, 1e3]);
+    /// let baryons = Species::new(&k, &matter, &density, &velocity, None)?;
+    /// assert!(!baryons.has_own_growth()); // there is no column to refer growth to
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn has_own_growth(&self) -> bool {
         self.reference.is_some()
@@ -85,6 +106,21 @@ impl<'a> Species<'a> {
 /// As [`super::mode_table::alpha_table`].
 ///
 /// Cost: 100 ns an entry.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::Species;
+///
+/// let k = [1e-4, 0.01, 1.0]; // columns of a Boltzmann code at the time of the particles
+/// let (matter, density, velocity) = ([6e5, 5e5, 1e3], [5.9e5, 4.8e5, 9e2], [6e5, 5e5, 1e3]);
+/// let baryons = Species::new(&k, &matter, &density, &velocity, None)?;
+/// use fixpair::cosmology::{Ratio, mode_table_length, species_table};
+///
+/// let mut table = vec![0.0; mode_table_length(8)?];
+/// species_table(&fixpair::exec::Serial, &baryons, Ratio::Density, 8, 1000.0, &mut table)?;
+/// assert!(table[1] < 1.0); // T_b/T_m
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn species_table(
     exec: &dyn Exec,
     species: &Species<'_>,

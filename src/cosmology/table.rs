@@ -24,6 +24,16 @@ impl<'a> Table<'a> {
     /// # Errors
     /// `Length` if they are not equally long; `NotFinite` if a number is NaN or infinite; `Table` if there are fewer than two rows, a number is
     /// not positive, or k does not increase (by at least 1e-12 of itself).
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Table;
+    ///
+    /// let table = Table::new(&[0.01, 0.1, 1.0], &[100.0, 10.0, 1.0])?;
+    /// assert!(Table::new(&[0.1, 0.01], &[1.0, 2.0]).is_err()); // k increases
+    /// # let _ = table;
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(k: &'a [f64], value: &'a [f64]) -> Result<Self> {
         if k.len() != value.len() {
             return Err(Error::Length);
@@ -44,17 +54,40 @@ impl<'a> Table<'a> {
     ///
     /// # Errors
     /// `NotFinite`.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Table;
+    ///
+    /// let table = Table::new(&[0.01, 0.1, 1.0], &[100.0, 10.0, 1.0])?.with_slope_below(1.0)?;
+    /// assert!((table.at(0.001)? - 10.0).abs() < 1e-9);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn with_slope_below(self, slope: f64) -> Result<Self> {
         if slope.is_finite() { Ok(Self { slope_below: Some(slope), ..self }) } else { Err(Error::NotFinite) }
     }
 
     /// The first column.
+    ///
+    /// ```
+    /// use fixpair::cosmology::Table;
+    ///
+    /// assert_eq!(Table::new(&[0.01, 1.0], &[2.0, 3.0])?.k(), [0.01, 1.0]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn k(&self) -> &'a [f64] {
         self.k
     }
 
     /// The second column.
+    ///
+    /// ```
+    /// use fixpair::cosmology::Table;
+    ///
+    /// assert_eq!(Table::new(&[0.01, 1.0], &[2.0, 3.0])?.value(), [2.0, 3.0]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn value(&self) -> &'a [f64] {
         self.value
@@ -66,6 +99,15 @@ impl<'a> Table<'a> {
     /// `NotFinite` if k is; `Range` if k is not positive or the continuation overflows.
     ///
     /// Cost: a binary search, ten logarithms and an exponential.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Table;
+    ///
+    /// let table = Table::new(&[0.01, 0.1, 1.0], &[100.0, 10.0, 1.0])?;
+    /// assert!((table.at(0.5)? - 2.0).abs() < 1e-9); // a power law is met exactly
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn at(&self, k: f64) -> Result<f64> {
         check_wavenumber(k)?;
         let value = libm::exp(Cursor::new(*self).ln_value(k, libm::log(k)));

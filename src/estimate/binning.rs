@@ -53,6 +53,14 @@ pub struct Bin {
 
 impl<'a> Binning<'a> {
     /// Bins of |n| with the mean alone; the line of sight is z.
+    ///
+    /// ```
+    /// use fixpair::estimate::binning::Binning;
+    ///
+    /// let binning = Binning { orders: 0b10101, ..Binning::shells(&[1, 4, 9, 16]) }; // P_0, P_2, P_4
+    /// assert_eq!((binning.bins()?, binning.multipoles()), (3, 3));
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub const fn shells(edges: &'a [u64]) -> Self {
         Self { edges, second: Second::None, axis: [0.0, 0.0, 1.0], orders: 1 }
@@ -63,11 +71,26 @@ impl<'a> Binning<'a> {
     /// # Errors
     /// `Table` for fewer than two edges, edges that do not increase, and edges of mu outside [0, 1] or of |n.a| below 0; `NotFinite` for edges or
     /// axes that are not; `Range` for an axis of length 0 and for orders that are empty or above 4; `Overflow` for 2^31 bins and more.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::estimate::binning::{Binning, Second};
+    ///
+    /// let wedges = Binning { second: Second::Cosine(&[0.0, 0.5, 1.0]), ..Binning::shells(&[1, 4, 9, 16]) };
+    /// assert_eq!(wedges.bins()?, 6);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn bins(&self) -> Result<usize> {
         self.check().map(|checked| checked.bins())
     }
 
     /// Multipoles.
+    ///
+    /// ```
+    /// use fixpair::estimate::binning::Binning;
+    ///
+    /// assert_eq!(Binning::shells(&[1, 4, 9]).multipoles(), 1);
+    /// ```
     #[must_use]
     pub const fn multipoles(&self) -> usize {
         self.orders.count_ones() as usize
@@ -77,6 +100,15 @@ impl<'a> Binning<'a> {
     ///
     /// # Errors
     /// As [`Binning::bins`]; `Length` for no spectra, `Overflow` if the bytes do not fit the address space.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::estimate::binning::Binning;
+    ///
+    /// let sums = vec![0_i64; Binning::shells(&[1, 4, 9]).words(1)?]; // of one spectrum
+    /// assert!(!sums.is_empty());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn words(&self, spectra: usize) -> Result<usize> {
         self.check()?.words(spectra)
     }
@@ -217,6 +249,31 @@ pub(super) fn carry_geometry(words: &mut [i64; GEOMETRY]) {
 ///
 /// # Errors
 /// As [`Binning::words`]; `Length`; `NotFinite` if a product was NaN, infinite or above 1e198 (nothing is then written).
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::binning::{Bin, Binning, read_sums};
+/// use fixpair::estimate::compensation::Compensation;
+/// use fixpair::estimate::power::power_sums;
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::noise::{Amplitude, Realisation, white_modes};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 18]);
+/// # let mut memory = Memory([0; 1 << 18]);
+/// # let scratch = &mut memory.0;
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let mut modes = vec![0.0_f64; brick.reals()];
+/// white_modes(&mut modes, &brick, &Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) }, &Serial)?;
+/// let binning = Binning::shells(&[1, 4, 9]);
+/// let mut sums = vec![0; binning.words(1)?];
+/// power_sums(&mut sums, &[&modes], &[[0, 0]], &[Compensation::None], &brick, &binning, scratch, &Serial)?;
+/// let (mut bins, mut values) = ([Bin::default(); 2], [0.0; 2]);
+/// read_sums(&mut bins, &mut values, &sums, &binning, 1)?;
+/// assert_eq!((bins[0].count, bins[1].count), (26, 66));
+/// assert!((values[0] - 26.0).abs() < 1e-12); // the sum of |w|^2
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn read_sums(
     bins: &mut [Bin],
     values: &mut [f64],
@@ -260,6 +317,33 @@ pub fn read_sums(
 ///
 /// # Errors
 /// `Range` for orders that are empty or above 4, `Length` if `values` is not a multiple of bins times multipoles, `NotFinite` for the factor.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::binning::{Bin, Binning, read_sums};
+/// use fixpair::estimate::compensation::Compensation;
+/// use fixpair::estimate::power::power_sums;
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::noise::{Amplitude, Realisation, white_modes};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 18]);
+/// # let mut memory = Memory([0; 1 << 18]);
+/// # let scratch = &mut memory.0;
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let mut modes = vec![0.0_f64; brick.reals()];
+/// white_modes(&mut modes, &brick, &Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) }, &Serial)?;
+/// let binning = Binning::shells(&[1, 4, 9]);
+/// let mut sums = vec![0; binning.words(1)?];
+/// power_sums(&mut sums, &[&modes], &[[0, 0]], &[Compensation::None], &brick, &binning, scratch, &Serial)?;
+/// let (mut bins, mut values) = ([Bin::default(); 2], [0.0; 2]);
+/// read_sums(&mut bins, &mut values, &sums, &binning, 1)?;
+/// use fixpair::estimate::binning::normalise;
+///
+/// normalise(&mut values, &bins, binning.orders, 1e9)?; // V: the modes are of variance P/V = 1
+/// assert!((values[0] / 1e9 - 1.0).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn normalise(values: &mut [f64], bins: &[Bin], orders: u32, factor: f64) -> Result<()> {
     let multipoles = check_values(values, bins, orders)?;
     if !factor.is_finite() {

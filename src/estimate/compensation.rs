@@ -36,6 +36,14 @@ pub enum Compensation {
 
 impl Compensation {
     /// The factor of one axis at mode number `m` of a mesh of side `n`, 0 <= m <= n/2.
+    ///
+    /// ```
+    /// use fixpair::estimate::compensation::Compensation;
+    /// use fixpair::pm::Window;
+    ///
+    /// let cic = Compensation::Window(Window::CloudInCell).factor(32, 64); // at the Nyquist frequency
+    /// assert!((cic - (std::f64::consts::PI / 2.0).powi(2)).abs() < 1e-12); // 1/sinc^2
+    /// ```
     #[must_use]
     pub fn factor(self, m: usize, n: usize) -> f64 {
         let x = PI * m as f64 / n as f64;
@@ -65,6 +73,15 @@ impl Compensation {
 ///
 /// # Errors
 /// `Brick` for a brick of configuration space, `Overflow`.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::compensation::compensate_scratch;
+/// use fixpair::mesh::{Brick, Space};
+///
+/// assert!(compensate_scratch(&Brick::whole(64, Space::Fourier)?)?.size < 4096);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn compensate_scratch(brick: &Brick) -> Result<Layout> {
     brick.check_space(Space::Fourier)?;
     Layout::EMPTY.and::<f64>(brick.n() / 2 + 1)
@@ -77,6 +94,23 @@ pub fn compensate_scratch(brick: &Brick) -> Result<Layout> {
 /// `Brick` for a brick of configuration space, `Length`, `Scratch`, `Alignment`, `Hook`, `NotFinite` for a scale that is not. Modes are not checked.
 ///
 /// Cost: one pass over the modes.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::compensation::{Compensation, compensate};
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::pm::Window;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let mut modes = vec![1.0_f64; brick.reals()];
+/// compensate(&mut modes, Compensation::Window(Window::CloudInCell), 1.0, &brick, scratch, &Serial)?;
+/// assert!(modes[0] == 1.0 && modes[2] > 1.0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn compensate<T: Real>(
     modes: &mut [T],
     compensation: Compensation,

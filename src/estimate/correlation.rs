@@ -22,6 +22,15 @@ use crate::within::Within;
 ///
 /// # Errors
 /// `Brick` for a brick of configuration space, `Overflow`.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::correlation::correlation_modes_scratch;
+/// use fixpair::mesh::{Brick, Space};
+///
+/// assert_eq!(correlation_modes_scratch(&Brick::whole(64, Space::Fourier)?)?.align, 64);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn correlation_modes_scratch(brick: &Brick) -> Result<Layout> {
     brick.check_space(Space::Fourier)?;
     Layout::EMPTY.and::<f64>(brick.n() / 2 + 1)
@@ -84,6 +93,17 @@ pub fn correlation_modes<T: Real>(
 ///
 /// # Errors
 /// `Brick` for a brick of Fourier space; else as [`Binning::words`].
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::binning::Binning;
+/// use fixpair::estimate::correlation::correlation_sums_scratch;
+/// use fixpair::mesh::{Brick, Space};
+///
+/// let brick = Brick::whole(64, Space::Configuration)?;
+/// assert_eq!(correlation_sums_scratch(&brick, &Binning::shells(&[1, 4, 9]), 1)?.align, 64);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn correlation_sums_scratch(brick: &Brick, binning: &Binning<'_>, meshes: usize) -> Result<Layout> {
     brick.check_space(Space::Configuration)?;
     sweep_scratch(brick, &binning.check()?, meshes)

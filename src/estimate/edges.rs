@@ -49,6 +49,16 @@ fn fill(edges: &mut [u64], at: impl Fn(usize) -> Result<u64>) -> Result<()> {
 ///
 /// # Errors
 /// `NotFinite`; `Range` for an edge below 0 or at 4e9 and above; `Table` for fewer than two edges or edges that do not increase as integers.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::edges::uniform_edges;
+///
+/// let mut edges = [0; 4];
+/// uniform_edges(&mut edges, 1.5, 3.0)?; // shells of 3 k_f about 3, 6, 9 k_f
+/// assert_eq!(edges, [3, 21, 57, 111]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn uniform_edges(edges: &mut [u64], first: f64, width: f64) -> Result<()> {
     if !first.is_finite() || !width.is_finite() {
         return Err(Error::NotFinite);
@@ -60,6 +70,16 @@ pub fn uniform_edges(edges: &mut [u64], first: f64, width: f64) -> Result<()> {
 ///
 /// # Errors
 /// As [`uniform_edges`]; `Length` if there are not as many edges as wavenumbers; `Range` for a box that is not positive.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::edges::wavenumber_edges;
+///
+/// let mut edges = [0; 2];
+/// wavenumber_edges(&mut edges, &[0.01, 0.02], 1000.0)?; // h/Mpc, Mpc/h
+/// assert_eq!(edges, [3, 11]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn wavenumber_edges(edges: &mut [u64], wavenumbers: &[f64], box_size: f64) -> Result<()> {
     if !box_size.is_finite() {
         return Err(Error::NotFinite);
@@ -77,6 +97,16 @@ pub fn wavenumber_edges(edges: &mut [u64], wavenumbers: &[f64], box_size: f64) -
 ///
 /// # Errors
 /// `Table` for fewer than two edges, `Overflow` beyond 2^64.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::edges::exact_edges;
+///
+/// let mut edges = [0; 4];
+/// exact_edges(&mut edges, 1)?; // a bin for each |n|^2
+/// assert_eq!(edges, [1, 2, 3, 4]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn exact_edges(edges: &mut [u64], first: u64) -> Result<()> {
     fill(edges, |b| first.checked_add(b as u64).ok_or(Error::Overflow))
 }

@@ -39,6 +39,13 @@ impl ExactSum {
     pub const WORDS: usize = VALUE + 1;
 
     /// The sums that lie in an array of integers, [`ExactSum::WORDS`] each; what is left over is not seen.
+    ///
+    /// ```
+    /// use fixpair::estimate::exact::ExactSum;
+    ///
+    /// let mut words = [0_i64; 2 * ExactSum::WORDS]; // what MPI adds
+    /// assert_eq!(ExactSum::in_words(&mut words).len(), 2);
+    /// ```
     #[must_use]
     pub const fn in_words(words: &mut [i64]) -> &mut [Self] {
         let (sums, _) = words.as_chunks_mut::<{ Self::WORDS }>();
@@ -47,6 +54,12 @@ impl ExactSum {
     }
 
     /// As [`ExactSum::in_words`], to read.
+    ///
+    /// ```
+    /// use fixpair::estimate::exact::ExactSum;
+    ///
+    /// assert_eq!(ExactSum::of_words(&[0_i64; ExactSum::WORDS])[0].value(), 0.0);
+    /// ```
     #[must_use]
     pub const fn of_words(words: &[i64]) -> &[Self] {
         let (sums, _) = words.as_chunks::<{ Self::WORDS }>();
@@ -55,12 +68,30 @@ impl ExactSum {
     }
 
     /// Was a term NaN, infinite or beyond 2^660?
+    ///
+    /// ```
+    /// use fixpair::estimate::exact::ExactSum;
+    ///
+    /// let mut sum = ExactSum::ZERO;
+    /// sum.add(f64::NAN);
+    /// assert!(sum.is_lost());
+    /// ```
     #[must_use]
     pub const fn is_lost(&self) -> bool {
         self.lost != 0
     }
 
     /// Adds a term. At most [`TERMS`] of them may follow one another without a [`ExactSum::carry`].
+    ///
+    /// ```
+    /// use fixpair::estimate::exact::ExactSum;
+    ///
+    /// let mut sum = ExactSum::ZERO;
+    /// for term in [1e30, 1.0, -1e30] {
+    ///     sum.add(term);
+    /// }
+    /// assert_eq!(sum.value(), 1.0); // rounded once
+    /// ```
     #[inline]
     pub fn add(&mut self, term: f64) {
         let bits = term.to_bits();
@@ -88,6 +119,17 @@ impl ExactSum {
     }
 
     /// Adds another sum.
+    ///
+    /// ```
+    /// use fixpair::estimate::exact::ExactSum;
+    ///
+    /// let mut sum = ExactSum::ZERO;
+    /// let mut other = sum;
+    /// sum.add(1.0);
+    /// other.add(2.0);
+    /// sum.merge(&other);
+    /// assert_eq!(sum.value(), 3.0);
+    /// ```
     #[inline]
     pub fn merge(&mut self, other: &Self) {
         for (sum, term) in self.value.iter_mut().zip(&other.value) {
@@ -97,6 +139,15 @@ impl ExactSum {
     }
 
     /// Brings the limbs into [0, 2^32), the last one apart: the one form that each value has.
+    ///
+    /// ```
+    /// use fixpair::estimate::exact::ExactSum;
+    ///
+    /// let mut sum = ExactSum::ZERO;
+    /// sum.add(1.5);
+    /// sum.carry(); // makes room for more terms, and changes no value
+    /// assert_eq!(sum.value(), 1.5);
+    /// ```
     pub fn carry(&mut self) {
         let mut carry = 0;
         for limb in &mut self.value[..VALUE - 1] {
@@ -108,6 +159,15 @@ impl ExactSum {
     }
 
     /// The sum, rounded once to the nearest f64; NaN if a term was not finite or too large.
+    ///
+    /// ```
+    /// use fixpair::estimate::exact::ExactSum;
+    ///
+    /// let mut sum = ExactSum::ZERO;
+    /// sum.add(0.1);
+    /// sum.add(0.2);
+    /// assert_eq!(sum.value(), 0.1 + 0.2);
+    /// ```
     #[must_use]
     pub fn value(&self) -> f64 {
         if self.lost != 0 {

@@ -29,6 +29,17 @@ use crate::within::Within;
 ///
 /// # Errors
 /// `Brick` for a brick of configuration space; else as [`Binning::words`].
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::binning::Binning;
+/// use fixpair::estimate::power::power_sums_scratch;
+/// use fixpair::mesh::{Brick, Space};
+///
+/// let layout = power_sums_scratch(&Brick::whole(64, Space::Fourier)?, &Binning::shells(&[1, 4, 9]), 1)?;
+/// assert_eq!(layout.align, 64);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn power_sums_scratch(brick: &Brick, binning: &Binning<'_>, pairs: usize) -> Result<Layout> {
     brick.check_space(Space::Fourier)?;
     let factors = factors_layout(brick, pairs)?;
@@ -53,6 +64,30 @@ fn factors_layout(brick: &Brick, pairs: usize) -> Result<Layout> {
 /// [`Binning::words`] for the binning, `Scratch`, `Alignment`, `Hook`; nothing is then added. A NaN or an infinite product shows in `read_sums`.
 ///
 /// Cost: one pass over each field for each pair it is in (its row stays in cache).
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::binning::{Bin, Binning, read_sums};
+/// use fixpair::estimate::compensation::Compensation;
+/// use fixpair::estimate::power::power_sums;
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::noise::{Amplitude, Realisation, white_modes};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 18]);
+/// # let mut memory = Memory([0; 1 << 18]);
+/// # let scratch = &mut memory.0;
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let mut modes = vec![0.0_f64; brick.reals()];
+/// white_modes(&mut modes, &brick, &Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) }, &Serial)?;
+/// let binning = Binning::shells(&[1, 4, 9]);
+/// let mut sums = vec![0; binning.words(1)?];
+/// power_sums(&mut sums, &[&modes], &[[0, 0]], &[Compensation::None], &brick, &binning, scratch, &Serial)?;
+/// let (mut bins, mut values) = ([Bin::default(); 2], [0.0; 2]);
+/// read_sums(&mut bins, &mut values, &sums, &binning, 1)?;
+/// assert!(bins[0].first > 1.0 && bins[0].first < 2.0); // mean |n|
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn power_sums<T: Real>(
     sums: &mut [i64],
     fields: &[&[T]],
@@ -174,6 +209,15 @@ fn imaginary_part<T: Real>(f: &[T; 2], g: &[T; 2]) -> f64 {
 /// # Errors
 /// `Length` for weights of another number than `particles`; `Range` for a box that is not positive, no particles, or weights that sum to 0;
 /// `NotFinite`.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::power::shot_noise;
+///
+/// assert_eq!(shot_noise::<f32>(None, 1000, 100.0)?, 1000.0); // V/N
+/// assert_eq!(shot_noise(Some(&[1.0, 3.0]), 2, 1.0)?, 10.0 / 16.0); // V sum w^2/(sum w)^2
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn shot_noise<T: Real>(weights: Option<&[T]>, particles: u64, box_size: f64) -> Result<f64> {
     if weights.is_some_and(|weights| weights.len() as u64 != particles) {
         return Err(Error::Length);
@@ -216,6 +260,35 @@ pub(crate) fn shot_noise_of(
 ///
 /// # Errors
 /// As [`normalise`](super::binning::normalise); `Length` if there are not as many spectra as pairs, `Range` for a pair of a field without noise.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::binning::{Bin, Binning, read_sums};
+/// use fixpair::estimate::compensation::Compensation;
+/// use fixpair::estimate::power::power_sums;
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::noise::{Amplitude, Realisation, white_modes};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 18]);
+/// # let mut memory = Memory([0; 1 << 18]);
+/// # let scratch = &mut memory.0;
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let mut modes = vec![0.0_f64; brick.reals()];
+/// white_modes(&mut modes, &brick, &Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) }, &Serial)?;
+/// let binning = Binning::shells(&[1, 4, 9]);
+/// let mut sums = vec![0; binning.words(1)?];
+/// power_sums(&mut sums, &[&modes], &[[0, 0]], &[Compensation::None], &brick, &binning, scratch, &Serial)?;
+/// let (mut bins, mut values) = ([Bin::default(); 2], [0.0; 2]);
+/// read_sums(&mut bins, &mut values, &sums, &binning, 1)?;
+/// use fixpair::estimate::binning::normalise;
+/// use fixpair::estimate::power::subtract_shot_noise;
+///
+/// normalise(&mut values, &bins, binning.orders, 1000.0)?;
+/// subtract_shot_noise(&mut values, &[[0, 0]], &bins, binning.orders, &[100.0])?;
+/// assert!((values[0] - 900.0).abs() < 1e-9);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn subtract_shot_noise(
     values: &mut [f64],
     pairs: &[[usize; 2]],

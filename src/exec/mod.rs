@@ -50,11 +50,31 @@ unsafe impl<T: Send> Send for Shared<'_, T> {}
 
 impl<'a, T> Shared<'a, T> {
     /// Borrows `data` until the value is dropped.
+    ///
+    /// ```
+    /// use fixpair::exec::{Exec, Serial, Shared};
+    ///
+    /// let mut data = [0; 4];
+    /// let shared = Shared::new(&mut data);
+    /// // SAFETY: each index takes a part of its own.
+    /// Serial.parallel_for(4, &|i| unsafe { shared.part(i, 1) }[0] = i)?;
+    /// assert_eq!(data, [0, 1, 2, 3]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(data: &'a mut [T]) -> Self {
         Self { start: data.as_mut_ptr(), length: data.len(), life: core::marker::PhantomData }
     }
 
     /// The address of element 0, for kernels that walk memory by strides.
+    ///
+    /// ```
+    /// use fixpair::exec::Shared;
+    ///
+    /// let mut data = [7];
+    /// let shared = Shared::new(&mut data);
+    /// // SAFETY: nobody else uses the data.
+    /// assert_eq!(unsafe { *shared.as_ptr() }, 7);
+    /// ```
     #[must_use]
     pub const fn as_ptr(&self) -> *mut T {
         self.start
@@ -64,6 +84,16 @@ impl<'a, T> Shared<'a, T> {
     ///
     /// # Safety
     /// The range lies inside the slice, and no other part that is alive overlaps it.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::exec::Shared;
+    ///
+    /// let mut data = [1, 2, 3, 4];
+    /// let shared = Shared::new(&mut data);
+    /// // SAFETY: the only part that is taken.
+    /// assert_eq!(unsafe { shared.part(1, 2) }, [2, 3]);
+    /// ```
     #[must_use]
     #[inline]
     #[expect(clippy::mut_from_ref, reason = "disjoint parts of one exclusive borrow")]
@@ -78,6 +108,16 @@ impl<'a, T> Shared<'a, T> {
 ///
 /// # Errors
 /// As [`Exec::parallel_for`].
+///
+/// # Example
+/// ```
+/// use fixpair::exec::{Serial, for_each_piece};
+///
+/// let mut data = [0; 10];
+/// for_each_piece(&Serial, &mut data, 4, &|piece, values| values.fill(piece))?;
+/// assert_eq!(data, [0, 0, 0, 0, 1, 1, 1, 1, 2, 2]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn for_each_piece<T: Send>(
     exec: &dyn Exec,
     data: &mut [T],

@@ -53,6 +53,17 @@ impl Threads {
     ///
     /// # Errors
     /// `Range` if `threads` is 0 or above 4096, `Thread` if the system refuses one.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::exec::{Threads, for_each_piece};
+    ///
+    /// let pool = Threads::new(2)?; // the calling thread is one of them
+    /// let mut data = [0; 10];
+    /// for_each_piece(&pool, &mut data, 4, &|piece, values| values.fill(piece))?;
+    /// assert_eq!(data, [0, 0, 0, 0, 1, 1, 1, 1, 2, 2]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(threads: usize) -> Result<Self> {
         if threads == 0 || threads > 4096 {
             return Err(Error::Range);
@@ -75,6 +86,13 @@ impl Threads {
     }
 
     /// Threads that run chunks, the caller's included.
+    ///
+    /// ```
+    /// use fixpair::exec::Threads;
+    ///
+    /// assert_eq!(Threads::new(2)?.threads(), 2);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn threads(&self) -> usize {
         self.workers.len() + 1

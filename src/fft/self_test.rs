@@ -36,6 +36,20 @@ const OUTSIDE: f64 = 1e12;
 /// # Errors
 /// `Length` if `data` is not `length` reals; `Hook` if a brick cannot be right or a transform failed or gave something
 /// else.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::fft::{Fft3, self_test};
+///
+/// let mut data = vec![0.0; fft.length()];
+/// self_test(&mut fft, &mut data)?; // the same for a transform of the host's
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn self_test<T: Real>(fft: &mut dyn Fft3<T>, data: &mut [T]) -> Result<()> {
     let (cells, modes) = (*fft.configuration(), *fft.fourier());
     let n = cells.n();

@@ -3,6 +3,13 @@
 use crate::mesh::{Brick, Space};
 
 /// The smallest such side that is not below `least`, for products without aliasing; none if it does not fit.
+///
+/// ```
+/// use fixpair::fft::next_side;
+///
+/// assert_eq!(next_side(3 * 64 / 2), Some(96)); // for products without aliasing
+/// assert_eq!(next_side(11), Some(12)); // even, of factors 2, 3, 5, 7
+/// ```
 #[must_use]
 pub fn next_side(least: usize) -> Option<usize> {
     let mut side = least.max(2).checked_next_multiple_of(2)?;

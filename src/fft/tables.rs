@@ -232,6 +232,14 @@ impl<'a, T: Real> Tables<'a, T> {
     /// # Errors
     /// `MeshSize` if n is zero, odd or has a prime factor other than 2, 3, 5 and 7; `Overflow` if a mesh of this side
     /// does not fit the address space.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::fft::Tables;
+    ///
+    /// assert!(Tables::<f64>::layout(64)?.size < 8192); // about 3 n numbers
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn layout(n: usize) -> Result<Layout> {
         if n == 0 || !n.is_multiple_of(2) {
             return Err(Error::MeshSize);
@@ -247,6 +255,18 @@ impl<'a, T: Real> Tables<'a, T> {
     ///
     /// # Errors
     /// As [`Tables::layout`]; `Scratch` or `Alignment` if `memory` is not as it says.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::fft::Tables;
+    /// # #[repr(align(64))] struct Memory([u8; 1 << 13]);
+    /// # let mut memory = Memory([0; 1 << 13]);
+    /// # let memory = &mut memory.0;
+    ///
+    /// let tables = Tables::<f64>::new(64, memory)?; // of Tables::layout bytes, aligned to 64
+    /// assert_eq!(tables.n(), 64);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(n: usize, memory: &'a mut [u8]) -> Result<Self> {
         let layout = Self::layout(n)?;
         let mut arena = Arena::new(memory, layout)?;
@@ -267,6 +287,19 @@ impl<'a, T: Real> Tables<'a, T> {
     ///
     /// # Errors
     /// `Version` if `memory` does not hold tables of this number type; `Scratch` or `Alignment` as [`Tables::new`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::fft::Tables;
+    /// # #[repr(align(64))] struct Memory([u8; 1 << 13]);
+    /// # let mut memory = Memory([0; 1 << 13]);
+    /// # let memory = &mut memory.0;
+    ///
+    /// Tables::<f64>::new(64, memory)?;
+    /// assert_eq!(Tables::<f64>::view(memory)?.n(), 64); // built once, read by any number of transforms
+    /// assert!(Tables::<f32>::view(memory).is_err());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn view(memory: &'a [u8]) -> Result<Self> {
         let mut rest = memory;
         if memory.len() < ALIGN {
@@ -293,6 +326,15 @@ impl<'a, T: Real> Tables<'a, T> {
     }
 
     /// Cells on a side of the mesh.
+    ///
+    /// ```
+    /// use fixpair::fft::Tables;
+    /// # #[repr(align(64))] struct Memory([u8; 1 << 13]);
+    /// # let mut memory = Memory([0; 1 << 13]);
+    ///
+    /// assert_eq!(Tables::<f32>::new(48, &mut memory.0)?.n(), 48);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub const fn n(&self) -> usize {
         self.n

@@ -28,6 +28,12 @@ const CHUNKS: usize = 64;
 
 /// Modes of padding after each x plane ([`Brick::whole_padded`]) with which the built-in transform is fastest: none,
 /// except where planes would begin a multiple of 1 KiB apart and their columns share a few sets of the cache.
+///
+/// ```
+/// use fixpair::fft::recommended_padding;
+///
+/// assert_eq!((recommended_padding::<f64>(64), recommended_padding::<f64>(96)), (4, 0));
+/// ```
 #[must_use]
 pub fn recommended_padding<T: Real>(n: usize) -> usize {
     let mode = 2 * size_of::<T>();
@@ -53,6 +59,14 @@ impl<'a, T: Real> Transform<'a, T> {
     ///
     /// # Errors
     /// `MeshSize`, `Overflow` as [`Tables::layout`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::fft::Transform;
+    ///
+    /// assert_eq!(Transform::<f64>::workspace(64)?.size, 4096 * 66);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn workspace(n: usize) -> Result<Layout> {
         Tables::<T>::layout(n)?;
         Layout::EMPTY.and::<u8>(CHUNKS * COMPLEX_BYTES * (n + 2))
@@ -64,6 +78,24 @@ impl<'a, T: Real> Transform<'a, T> {
     /// # Errors
     /// `Brick` if the brick is otherwise or of another side than the tables; `Scratch`, `Alignment` if the workspace is
     /// not as [`Transform::workspace`] says.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::exec::Serial;
+    /// use fixpair::fft::{Fft3, Tables, Transform};
+    /// use fixpair::mesh::{Brick, Space};
+    /// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+    /// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+    /// # let (tables, work) = (&mut tables.0, &mut work.0);
+    ///
+    /// let tables = Tables::<f64>::new(8, tables)?;
+    /// let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, work, &Serial)?;
+    /// let mut data = vec![0.0; fft.length()];
+    /// data[0] = 1.0; // one cell
+    /// fft.forward(&mut data)?;
+    /// assert!((data[0] - 1.0).abs() < 1e-15 && (data[2] - 1.0).abs() < 1e-15); // every mode is 1
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(
         tables: &'a Tables<'a, T>,
         configuration: Brick,
@@ -84,6 +116,19 @@ impl<'a, T: Real> Transform<'a, T> {
     }
 
     /// The same transform by another code path, where the processor has it. Paths differ by rounding.
+    ///
+    /// ```
+    /// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+    /// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+    /// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+    /// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+    /// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+    /// use fixpair::simd::Simd;
+    ///
+    /// let fft = fft.with_simd(Simd::Portable); // the bits of processors without AVX2
+    /// # let _ = fft;
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn with_simd(mut self, simd: Simd) -> Self {
         self.simd = if simd == Simd::detect() { simd } else { Simd::Portable };

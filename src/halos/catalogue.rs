@@ -80,6 +80,14 @@ fn sort(halos: &mut [Halo]) {
 ///
 /// # Errors
 /// `Overflow` for 2^32 particles and more, or if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::halos::halos_scratch;
+///
+/// assert!(halos_scratch(1 << 24)?.size < 13 << 24); // some 12 bytes a particle
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn halos_scratch(particles: usize) -> Result<Layout> {
     members::layout(particles)
 }
@@ -92,6 +100,24 @@ pub fn halos_scratch(particles: usize) -> Result<Layout> {
 /// `Range` for `n_min` = 0; `Overflow`, `Scratch`, `Alignment`, `Hook`.
 ///
 /// Cost: most of that of [`halos`].
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::halos::fof_labels;
+/// use fixpair::pm::Positions;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let position = Positions::triples(&[9.9_f64, 5.0, 5.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0])?; // two are friends over the edge
+/// let mut labels = [0; 3];
+/// fof_labels(&mut labels, &position, None, 10.0, 0.5, scratch, &Serial)?;
+/// use fixpair::halos::halo_count;
+///
+/// assert_eq!(halo_count(&labels, 2, scratch, &Serial)?, 1); // of two particles and more
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn halo_count(labels: &[u64], n_min: u64, scratch: &mut [u8], exec: &dyn Exec) -> Result<usize> {
     if n_min == 0 {
         return Err(Error::Range);
@@ -109,6 +135,26 @@ pub fn halo_count(labels: &[u64], n_min: u64, scratch: &mut [u8], exec: &dyn Exe
 /// `Hook`, after which halos are undefined, as they are after `NotFinite` for velocities whose squares no number holds.
 ///
 /// The same bits for any number of threads.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::halos::fof_labels;
+/// use fixpair::pm::Positions;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let position = Positions::triples(&[9.9_f64, 5.0, 5.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0])?; // two are friends over the edge
+/// let mut labels = [0; 3];
+/// fof_labels(&mut labels, &position, None, 10.0, 0.5, scratch, &Serial)?;
+/// use fixpair::halos::{Halo, halos};
+///
+/// let mut found = [Halo::default()];
+/// let count = halos(&mut found, &labels, &position, None, 10.0, 2, 1e10, scratch, &Serial)?;
+/// assert!(count == 1 && found[0].members == 2 && found[0].mass == 2e10);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn halos<T: Real>(
     halos: &mut [Halo],
     labels: &[u64],

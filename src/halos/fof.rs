@@ -22,6 +22,14 @@ use crate::within::Within;
 ///
 /// # Errors
 /// `NotFinite`; `Range` unless b and L are positive and there are particles, and for a length that no number holds.
+///
+/// # Example
+/// ```
+/// use fixpair::halos::linking_length;
+///
+/// assert!((linking_length(0.2, 1000.0, 512 * 512 * 512)? - 0.2 * 1000.0 / 512.0).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn linking_length(b: f64, box_size: f64, particles_total: u64) -> Result<f64> {
     if !(b.is_finite() && box_size.is_finite()) {
         return Err(Error::NotFinite);
@@ -50,6 +58,14 @@ fn shared_bytes<T: Real>(particles: usize) -> Result<usize> {
 ///
 /// # Errors
 /// `Overflow` for 2^32 particles and more, or if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::halos::fof_labels_scratch;
+///
+/// assert!(fof_labels_scratch::<f32>(1 << 24)?.size < 25 << 24); // some 24 bytes a particle
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn fof_labels_scratch<T: Real>(particles: usize) -> Result<Layout> {
     let layout = Layout::EMPTY
         .and::<u8>(shared_bytes::<T>(particles)?)?
@@ -73,6 +89,22 @@ pub fn fof_labels_scratch<T: Real>(particles: usize) -> Result<Layout> {
 ///
 /// The same labels for any number of threads. Cost on one core, `f32`: 120 ns a particle of a simulation at z = 0 with l = 0.2 of the mean
 /// separation, and no more where particles coincide. Two cells of many particles that nearly touch and hold no friends cost all their pairs.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::halos::fof_labels;
+/// use fixpair::pm::Positions;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let position = Positions::triples(&[9.9_f64, 5.0, 5.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0])?; // two are friends over the edge
+/// let mut labels = [0; 3];
+/// fof_labels(&mut labels, &position, None, 10.0, 0.5, scratch, &Serial)?;
+/// assert_eq!(labels, [0, 0, 2]); // the smallest id of each group
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn fof_labels<T: Real>(
     labels: &mut [u64],
     position: &Positions<'_, T>,

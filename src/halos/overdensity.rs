@@ -34,6 +34,16 @@ impl Overdensity {
     /// # Errors
     /// As [`Cosmology::expansion`]; `NotFinite`; `Range` for a density that is not positive, and for the virial one in a universe with both
     /// dark energy and |1 - Om - Ode - Or| > 1e-3.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    /// use fixpair::halos::Overdensity;
+    ///
+    /// let in_means = Overdensity::Critical(200.0).over_mean(&Cosmology::goliat(), 1.0)?;
+    /// assert!((in_means - 200.0 / 0.27).abs() < 1e-9);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn over_mean(self, cosmology: &Cosmology, a: f64) -> Result<f64> {
         let matter = cosmology.matter_fraction(a)?;
         let delta = match self {
@@ -73,6 +83,14 @@ pub const CRITICAL_DENSITY: f64 = {
 ///
 /// # Errors
 /// `NotFinite`; `Range` unless Om and L are positive and there are particles.
+///
+/// # Example
+/// ```
+/// use fixpair::halos::particle_mass;
+///
+/// assert!((particle_mass(0.27, 1000.0, 512 * 512 * 512)? / 5.583e11 - 1.0).abs() < 1e-3); // Msun/h
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn particle_mass(omega_m: f64, box_size: f64, particles_total: u64) -> Result<f64> {
     if !(omega_m.is_finite() && box_size.is_finite()) {
         return Err(Error::NotFinite);

@@ -34,6 +34,26 @@ const SMALLEST: f64 = 1e-9;
 /// `Alignment`; `Hook`, after which some centres are moved.
 ///
 /// The same bits for any number of threads. Cost: a sort of the particles, then log(radius ratio)/log(factor) sums over those of each sphere.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::halos::fof_labels;
+/// use fixpair::pm::Positions;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let position = Positions::triples(&[9.9_f64, 5.0, 5.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0])?; // two are friends over the edge
+/// let mut labels = [0; 3];
+/// fof_labels(&mut labels, &position, None, 10.0, 0.5, scratch, &Serial)?;
+/// use fixpair::halos::{Shrink, refine_centres};
+///
+/// let mut centres = [[0.05, 5.0, 5.0]];
+/// refine_centres(&mut centres, &[1.0], &position, 10.0, &Shrink { factor: 0.9, n_min: 1 }, scratch, &Serial)?;
+/// assert!((centres[0][1] - 5.0).abs() < 0.1);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn refine_centres<T: Real>(
     centres: &mut [[f64; 3]],
     radii: &[f64],

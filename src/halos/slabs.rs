@@ -84,6 +84,16 @@ const CHUNK: usize = 1 << 14;
 /// `Table` unless the labels of the map increase; `Hook`, after which some labels are replaced.
 ///
 /// Cost: a binary search a particle.
+///
+/// # Example
+/// ```
+/// use fixpair::halos::fof_relabel;
+///
+/// let mut labels = [7, 2];
+/// fof_relabel(&mut labels, &[[7, 3]], &fixpair::exec::Serial)?; // the group that began at 7 goes on at 3
+/// assert_eq!(labels, [3, 2]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn fof_relabel(labels: &mut [u64], map: &[[u64; 2]], exec: &dyn Exec) -> Result<()> {
     check_map(map)?;
     for_each_piece(exec, labels, CHUNK, &|_, labels| {

@@ -57,6 +57,14 @@ pub(super) fn radius(k: u64, overdensity: f64, box_size: f64, particles_total: u
 ///
 /// # Errors
 /// `Overflow` for 2^32 particles and more, or if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::halos::spheres_scratch;
+///
+/// assert!(spheres_scratch::<f32>(1 << 24)?.size < 25 << 24);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn spheres_scratch<T: Real>(particles: usize) -> Result<Layout> {
     grid::layout::<T>(particles)
 }

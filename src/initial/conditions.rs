@@ -65,6 +65,30 @@ impl From<Order> for Parts {
 
 impl<'a> InitialConditions<'a> {
     /// What scratch depends on.
+    ///
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Wiggles};
+    /// use fixpair::initial::conditions::{InitialConditions, Order};
+    /// use fixpair::initial::{png::Local, shape::Shape};
+    /// use fixpair::noise::{Amplitude, Realisation};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let conditions = InitialConditions {
+    ///     realisation: Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) },
+    ///     linear: Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?,
+    ///     cosmology,
+    ///     redshift: 32.0,
+    ///     box_size: 1000.0,
+    ///     local: Local { f_nl: 100.0, g_nl: 0.0 },
+    ///     shape: Shape::Local.rows(),
+    ///     species: None,
+    ///     convention: Convention::Cmb,
+    ///     order: Order::Second,
+    /// };
+    /// assert!(conditions.parts().local); // f_NL is not 0
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn parts(&self) -> Parts {
         let local = ShapeRow::local(self.shape).is_some();
@@ -97,6 +121,31 @@ impl<'a> InitialConditions<'a> {
     ///
     /// # Errors
     /// `NotFinite` or `Range` for parameters out of range.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Wiggles};
+    /// use fixpair::initial::conditions::{InitialConditions, Order};
+    /// use fixpair::initial::{png::Local, shape::Shape};
+    /// use fixpair::noise::{Amplitude, Realisation};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let conditions = InitialConditions {
+    ///     realisation: Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) },
+    ///     linear: Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?,
+    ///     cosmology,
+    ///     redshift: 32.0,
+    ///     box_size: 1000.0,
+    ///     local: Local { f_nl: 100.0, g_nl: 0.0 },
+    ///     shape: Shape::Local.rows(),
+    ///     species: None,
+    ///     convention: Convention::Cmb,
+    ///     order: Order::Second,
+    /// };
+    /// assert!(conditions.poisson()?.alpha(0.01)? > 0.0); // at the redshift of the particles
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn poisson(&self) -> Result<Poisson<'a>> {
         self.check()?;
         Poisson::new(&self.cosmology, self.linear, self.scale_factor(), self.convention)
@@ -106,6 +155,33 @@ impl<'a> InitialConditions<'a> {
     ///
     /// # Errors
     /// As [`InitialConditions::poisson`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Wiggles};
+    /// use fixpair::initial::conditions::{InitialConditions, Order};
+    /// use fixpair::initial::{png::Local, shape::Shape};
+    /// use fixpair::noise::{Amplitude, Realisation};
+    ///
+    /// let cosmology = Cosmology::goliat();
+    /// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+    /// let conditions = InitialConditions {
+    ///     realisation: Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) },
+    ///     linear: Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?,
+    ///     cosmology,
+    ///     redshift: 32.0,
+    ///     box_size: 1000.0,
+    ///     local: Local { f_nl: 100.0, g_nl: 0.0 },
+    ///     shape: Shape::Local.rows(),
+    ///     species: None,
+    ///     convention: Convention::Cmb,
+    ///     order: Order::Second,
+    /// };
+    /// let motion = conditions.motion()?;
+    /// assert_eq!(motion.box_size, 1000.0);
+    /// assert!(motion.velocity > 0.0);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn motion(&self) -> Result<Motion> {
         self.start().map(|(_, motion)| motion)
     }
@@ -185,6 +261,39 @@ impl Sizes {
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Wiggles};
+/// use fixpair::initial::conditions::{InitialConditions, Order};
+/// use fixpair::initial::{png::Local, shape::Shape};
+/// use fixpair::noise::{Amplitude, Realisation};
+///
+/// let cosmology = Cosmology::goliat();
+/// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+/// let conditions = InitialConditions {
+///     realisation: Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) },
+///     linear: Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?,
+///     cosmology,
+///     redshift: 32.0,
+///     box_size: 1000.0,
+///     local: Local { f_nl: 100.0, g_nl: 0.0 },
+///     shape: Shape::Local.rows(),
+///     species: None,
+///     convention: Convention::Cmb,
+///     order: Order::Second,
+/// };
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::conditions::initial_conditions_scratch;
+///
+/// let layout = initial_conditions_scratch(conditions.parts(), &fft, None)?; // products alias
+/// assert!(layout.size > 0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn initial_conditions_scratch<T: Real>(
     parts: Parts,
     fft: &dyn Fft3<T>,
@@ -205,6 +314,44 @@ pub fn initial_conditions_scratch<T: Real>(
 ///
 /// Cost: with f_NL and second order 15 transforms, or 6 of `fft` and 10 of `fine`; one noise field, and about 33 passes. At third order 198 transforms
 /// of `fft`, and those of f_NL.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Wiggles};
+/// use fixpair::initial::conditions::{InitialConditions, Order};
+/// use fixpair::initial::{png::Local, shape::Shape};
+/// use fixpair::noise::{Amplitude, Realisation};
+///
+/// let cosmology = Cosmology::goliat();
+/// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+/// let conditions = InitialConditions {
+///     realisation: Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) },
+///     linear: Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?,
+///     cosmology,
+///     redshift: 32.0,
+///     box_size: 1000.0,
+///     local: Local { f_nl: 100.0, g_nl: 0.0 },
+///     shape: Shape::Local.rows(),
+///     species: None,
+///     convention: Convention::Cmb,
+///     order: Order::Second,
+/// };
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::conditions::initial_conditions;
+/// use fixpair::initial::particles::Components;
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0; // of initial_conditions_scratch bytes
+///
+/// let (mut x, mut v) = ([0.0; 3 * 512], [0.0; 3 * 512]); // Mpc/h, km/s
+/// let (mut position, mut velocity) = (Components::triples(&mut x)?, Components::triples(&mut v)?);
+/// initial_conditions(&mut position, &mut velocity, &conditions, &mut fft, None, scratch, &Serial)?;
+/// assert!(x.iter().all(|x| (0.0..1000.0).contains(x)) && v[0] != 0.0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn initial_conditions<T: Real>(
     position: &mut Components<'_, T>,
     velocity: &mut Components<'_, T>,

@@ -136,6 +136,12 @@ pub fn rest_length<T: Real>(
 }
 
 /// Entries of `table` in [`Work`]: N/2 + 1 at third order.
+///
+/// ```
+/// use fixpair::initial::displacements::{Order, table_length};
+///
+/// assert!(table_length(Order::Third, 8) > table_length(Order::Second, 8)); // half cells
+/// ```
 #[must_use]
 pub const fn table_length(order: Order, n: usize) -> usize {
     if matches!(order, Order::Third) { half_cells_length(n) } else { 0 }

@@ -70,6 +70,24 @@ impl Factor for Tidal {
 /// `Range` for an axis above 2, `NotFinite` for the scale, `Brick` for bricks that do not match, `Length`, or what `fft` returns.
 ///
 /// Cost: one pass and one transform.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// let modes = Brick::whole(8, Space::Fourier)?;
+/// let mut delta = vec![0.0; fft.length()];
+/// delta[2] = 0.01; // the mode (0, 0, 1) of a density contrast
+/// use fixpair::initial::lpt::displacement;
+///
+/// let (mut psi, scale) = (vec![0.0; fft.length()], 100.0 / std::f64::consts::TAU); // L/(2 pi), L = 100 Mpc/h
+/// displacement(&mut psi, &delta, &modes, 2, scale, &mut fft, &Serial)?; // along z
+/// assert!((psi[2] + 2.0 * 0.01 * scale).abs() < 1e-12); // delta = 0.02 cos kz gives -0.02 L/(2 pi) sin kz
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn displacement<T: Real>(
     out: &mut [T],
     source: &[T],

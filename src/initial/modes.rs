@@ -29,6 +29,19 @@ pub(crate) trait Factor: Sync {
 /// themselves are not checked.
 ///
 /// Cost: one pass over the modes.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::initial::modes::scale_by_table;
+/// use fixpair::mesh::{Brick, Space};
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let (mut modes, table) = (vec![1.0_f64; brick.reals()], core::array::from_fn::<_, 49, _>(|square| square as f64));
+/// scale_by_table(&mut modes, &brick, &table, &Serial)?; // by |n|^2
+/// assert_eq!((modes[0], modes[2], modes[4]), (0.0, 1.0, 4.0));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn scale_by_table<T: Real>(modes: &mut [T], brick: &Brick, table: &[f64], exec: &dyn Exec) -> Result<()> {
     brick.check_space(Space::Fourier)?;
     let n = brick.n();
@@ -230,6 +243,19 @@ impl Factor for ByTable<'_> {
 /// have to be exchanged by the host), `Length` for short arrays.
 ///
 /// Cost: one pass over `to`.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::initial::modes::copy_modes;
+/// use fixpair::mesh::{Brick, Space};
+///
+/// let (coarse, fine) = (Brick::whole(8, Space::Fourier)?, Brick::whole(12, Space::Fourier)?);
+/// let (from, mut to) = (vec![1.0_f64; coarse.reals()], vec![0.0_f64; fine.reals()]);
+/// copy_modes(&mut to, &fine, &from, &coarse, &Serial)?; // what they share; the rest is zero
+/// assert_eq!((to[2], to[2 * 5]), (1.0, 0.0));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn copy_modes<T: Real>(
     to: &mut [T],
     to_brick: &Brick,

@@ -32,6 +32,14 @@ impl<'a, T: Real> Components<'a, T> {
     ///
     /// # Errors
     /// `Length` if the array is not made of triples.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::initial::particles::Components;
+    ///
+    /// assert_eq!(Components::triples(&mut [0.0_f32; 6])?.len(), 2);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn triples(array: &'a mut [T]) -> Result<Self> {
         if !array.len().is_multiple_of(3) {
             return Err(Error::Length);
@@ -45,6 +53,15 @@ impl<'a, T: Real> Components<'a, T> {
     ///
     /// # Errors
     /// `Length` if the arrays differ in length.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::initial::particles::Components;
+    ///
+    /// let (mut x, mut y, mut z) = ([0.0_f32; 2], [0.0; 2], [0.0; 2]);
+    /// assert_eq!(Components::separate([&mut x, &mut y, &mut z])?.len(), 2);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn separate(arrays: [&'a mut [T]; 3]) -> Result<Self> {
         let particles = arrays[0].len();
         if arrays.iter().any(|array| array.len() != particles) {
@@ -64,18 +81,41 @@ impl<'a, T: Real> Components<'a, T> {
     }
 
     /// Particles.
+    ///
+    /// ```
+    /// use fixpair::initial::particles::Components;
+    ///
+    /// assert_eq!(Components::triples(&mut [0.0_f64; 9])?.len(), 3);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub const fn len(&self) -> usize {
         self.particles
     }
 
     /// No particles?
+    ///
+    /// ```
+    /// use fixpair::initial::particles::Components;
+    ///
+    /// assert!(Components::<f64>::triples(&mut [])?.is_empty());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.particles == 0
     }
 
     /// The same elements, lent on: for a call that takes the value while the caller keeps it.
+    ///
+    /// ```
+    /// use fixpair::initial::particles::Components;
+    ///
+    /// let mut array = [0.0_f64; 3];
+    /// let mut components = Components::triples(&mut array)?;
+    /// assert_eq!(components.reborrow().len(), components.len()); // one call after the other
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub const fn reborrow(&mut self) -> Components<'_, T> {
         Components { start: self.start, stride: self.stride, particles: self.particles, life: PhantomData }
@@ -129,6 +169,21 @@ pub struct Step {
 /// displacement is NaN or infinite or so large that the position is lost: outputs are then written but meaningless.
 ///
 /// Cost: one pass over the displacements and the two outputs.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::initial::particles::{Components, Step, displace};
+/// use fixpair::mesh::{Brick, Space};
+///
+/// let cells = Brick::whole(2, Space::Configuration)?;
+/// let (psi, mut x, mut v) = (vec![0.25; cells.reals()], [0.0; 24], [0.0; 24]);
+/// let step = Step { box_size: 2.0, first_velocity: 10.0, second_velocity: 0.0 };
+/// let (mut position, mut velocity) = (Components::triples(&mut x)?, Components::triples(&mut v)?);
+/// displace(&mut position, &mut velocity, &psi, None, &cells, 0, &step, &Serial)?; // along x
+/// assert_eq!((x[0], x[12], v[0]), (0.25, 1.25, 2.5));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn displace<T: Real>(
     position: &mut Components<'_, T>,
     velocity: &mut Components<'_, T>,
@@ -293,6 +348,18 @@ pub(crate) fn wrap(x: f64, box_size: f64) -> f64 {
 ///
 /// # Errors
 /// `Brick` for a brick of Fourier space, `Length` unless there is one id a cell, `Overflow` if the last id exceeds 64 bits.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::initial::particles::particle_ids;
+/// use fixpair::mesh::{Brick, Space};
+///
+/// let mut ids = [0; 512];
+/// particle_ids(&mut ids, &Brick::whole(8, Space::Configuration)?, 1, &Serial)?; // Gadget's begin at 1
+/// assert_eq!((ids[0], ids[511]), (1, 512));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn particle_ids(ids: &mut [u64], brick: &Brick, first_id: u64, exec: &dyn Exec) -> Result<()> {
     brick.check_space(Space::Configuration)?;
     if ids.len() != brick.elements() {

@@ -28,12 +28,25 @@ pub struct Local {
 
 impl Local {
     /// Is there nothing to add to a Gaussian field?
+    ///
+    /// ```
+    /// use fixpair::initial::png::Local;
+    ///
+    /// assert!(Local { f_nl: 0.0, g_nl: 0.0 }.is_gaussian());
+    /// ```
     #[must_use]
     pub fn is_gaussian(&self) -> bool {
         self.f_nl == 0.0 && self.g_nl == 0.0
     }
 
     /// The least side of a work mesh on which the products of a mesh of side `n` do not alias.
+    ///
+    /// ```
+    /// use fixpair::initial::png::Local;
+    ///
+    /// assert_eq!(Local { f_nl: 100.0, g_nl: 0.0 }.dealiased_side(64), 96);
+    /// assert_eq!(Local { f_nl: 100.0, g_nl: 1e5 }.dealiased_side(64), 128);
+    /// ```
     #[must_use]
     pub fn dealiased_side(&self, n: usize) -> usize {
         if self.g_nl == 0.0 { n.div_ceil(2) * 3 } else { 2 * n }
@@ -41,6 +54,13 @@ impl Local {
 
     /// # Errors
     /// `NotFinite` for NaN or infinite coefficients.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::initial::png::Local;
+    ///
+    /// assert!(Local { f_nl: f64::INFINITY, g_nl: 0.0 }.check().is_err());
+    /// ```
     pub fn check(&self) -> Result<()> {
         if self.f_nl.is_finite() && self.g_nl.is_finite() { Ok(()) } else { Err(Error::NotFinite) }
     }
@@ -50,6 +70,19 @@ impl Local {
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::png::add_local_scratch;
+///
+/// assert_eq!(add_local_scratch::<f64>(&fft)?.align, 64);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn add_local_scratch<T: Real>(work: &dyn Fft3<T>) -> Result<Layout> {
     Layout::EMPTY.and::<[f64; 1]>(chunks(work.configuration()))
 }

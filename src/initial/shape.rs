@@ -38,6 +38,13 @@ pub struct Quadratic<'a> {
 
 impl Quadratic<'_> {
     /// Is there nothing to add to a Gaussian field?
+    ///
+    /// ```
+    /// use fixpair::initial::shape::{Quadratic, Shape};
+    ///
+    /// let quadratic = Quadratic { f_nl: 0.0, rows: Shape::Equilateral.rows(), n_s: 0.96 };
+    /// assert!(quadratic.is_gaussian());
+    /// ```
     #[must_use]
     pub fn is_gaussian(&self) -> bool {
         self.f_nl == 0.0 || self.rows.iter().all(|row| row.coefficient == 0.0)
@@ -46,6 +53,14 @@ impl Quadratic<'_> {
     /// # Errors
     /// `NotFinite` for NaN or infinite numbers; `Range` for |n_s| > 10, an |s| above [`LARGEST_EXPONENT`], or a row whose exponents do
     /// not sum to 0 within 1e-12 and which therefore has a unit.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::initial::shape::{Quadratic, Shape};
+    ///
+    /// let quadratic = Quadratic { f_nl: f64::NAN, rows: Shape::Equilateral.rows(), n_s: 0.96 };
+    /// assert!(quadratic.check().is_err());
+    /// ```
     pub fn check(&self) -> Result<()> {
         if !(self.f_nl.is_finite() && self.n_s.is_finite()) {
             return Err(Error::NotFinite);
@@ -75,6 +90,19 @@ impl Quadratic<'_> {
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::shape::add_quadratic_scratch;
+///
+/// assert_eq!(add_quadratic_scratch::<f64>(&Brick::whole(8, Space::Fourier)?, &fft)?.align, 64);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn add_quadratic_scratch<T: Real>(brick: &Brick, work: &dyn Fft3<T>) -> Result<Layout> {
     let layout = Layout::EMPTY.and::<T>(work.length())?.and::<T>(work.length())?;
     layout.and::<T>(brick.reals())?.and::<f64>(mode_table_length(brick.n())?)

@@ -37,6 +37,13 @@ impl ShapeRow {
     }
 
     /// The coefficient, if all that the rows are is Phi^2.
+    ///
+    /// ```
+    /// use fixpair::initial::shape::{Shape, ShapeRow};
+    ///
+    /// assert_eq!(ShapeRow::local(Shape::Local.rows()), Some(1.0));
+    /// assert_eq!(ShapeRow::local(Shape::Equilateral.rows()), None);
+    /// ```
     #[must_use]
     pub fn local(rows: &[Self]) -> Option<f64> {
         match rows {
@@ -47,6 +54,14 @@ impl ShapeRow {
 
     /// # Errors
     /// As [`super::shape::Quadratic::check`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::initial::shape::ShapeRow;
+    ///
+    /// let row = ShapeRow { coefficient: 1.0, s_out: -1.0, s_a: 1.0, s_b: 0.5 };
+    /// assert!(row.check().is_err()); // exponents sum to 0
+    /// ```
     pub fn check(&self) -> Result<()> {
         let exponents = [self.s_out, self.s_a, self.s_b];
         if !(self.coefficient.is_finite() && exponents.iter().all(|s| s.is_finite())) {
@@ -117,6 +132,12 @@ impl Shape {
         [Self::Local, Self::Equilateral, Self::Orthogonal, Self::OrthogonalLss, Self::Folded];
 
     /// The rows of its kernel.
+    ///
+    /// ```
+    /// use fixpair::initial::shape::Shape;
+    ///
+    /// assert_eq!(Shape::Equilateral.rows().len(), 4); // separable products
+    /// ```
     #[must_use]
     pub const fn rows(self) -> &'static [ShapeRow] {
         match self {

@@ -31,6 +31,12 @@ const BLOCK: usize = 32;
 pub struct HalfCells<'a>(&'a [[f64; 2]]);
 
 /// Entries of [`HalfCells`] of a mesh of side `n`.
+///
+/// ```
+/// use fixpair::initial::shifted::half_cells_length;
+///
+/// assert!(half_cells_length(8) > 0);
+/// ```
 #[must_use]
 pub const fn half_cells_length(n: usize) -> usize {
     n / 2 + 1

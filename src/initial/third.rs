@@ -123,6 +123,19 @@ pub fn third_order_sources<T: Real>(
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::third::third_order_scratch;
+///
+/// assert_eq!(third_order_scratch::<f64>(&fft)?.align, 64);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn third_order_scratch<T: Real>(fft: &dyn Fft3<T>) -> Result<Layout> {
     let table = Layout::EMPTY.and::<[f64; 2]>(half_cells_length(fft.configuration().n()))?;
     (0..THIRD_ORDER_MESHES).try_fold(table, |layout, _| layout.and::<T>(fft.length()))

@@ -30,6 +30,12 @@ const SERIES: [f64; 7] = [
 /// u = 2^e (1 + f) with 1 + f in [sqrt(1/2), sqrt(2)); with s = f/(2 + f), ln(1 + f) = 2 atanh(s) = f - f^2/2 + s (f^2/2 + R(s^2)),
 /// whose first terms are exact or nearly so (the arrangement of fdlibm). Error below 1 ulp. Zero, subnormal, negative
 /// and NaN arguments give a number without meaning.
+///
+/// ```
+/// use fixpair::math::neg_ln;
+///
+/// assert!((neg_ln(0.5) - std::f64::consts::LN_2).abs() < 1e-15);
+/// ```
 #[must_use]
 #[inline(always)]
 pub fn neg_ln(u: f64) -> f64 {

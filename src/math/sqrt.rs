@@ -1,6 +1,12 @@
 //! The square root: correctly rounded by IEEE 754, so one answer everywhere; only its instruction differs.
 
 /// sqrt(x).
+///
+/// ```
+/// use fixpair::math::sqrt;
+///
+/// assert_eq!(sqrt(2.0), 2.0_f64.sqrt()); // without std
+/// ```
 #[must_use]
 #[inline(always)]
 pub fn sqrt(x: f64) -> f64 {
@@ -10,6 +16,14 @@ pub fn sqrt(x: f64) -> f64 {
 }
 
 /// Replaces each value by its square root.
+///
+/// ```
+/// use fixpair::math::sqrt_in_place;
+///
+/// let mut x = [4.0, 9.0];
+/// sqrt_in_place(&mut x);
+/// assert_eq!(x, [2.0, 3.0]);
+/// ```
 #[inline(always)]
 pub fn sqrt_in_place<const N: usize>(x: &mut [f64; N]) {
     let (pairs, rest) = x.as_chunks_mut::<2>();

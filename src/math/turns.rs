@@ -29,6 +29,13 @@ const COSINE: [f64; 6] = [
 /// The nearest quarter turn is taken off exactly (u is a multiple of its own ulp, and so is the rest), and the rest,
 /// at most an eighth of a turn, goes into two polynomials. Multiples of a quarter turn give 0 and +-1 exactly. Absolute
 /// error below 2.3e-16.
+///
+/// ```
+/// use fixpair::math::sin_cos_turns;
+///
+/// let (sine, cosine) = sin_cos_turns(0.25); // of 2 pi u
+/// assert!((sine - 1.0).abs() < 1e-15 && cosine.abs() < 1e-15);
+/// ```
 #[must_use]
 #[inline(always)]
 pub fn sin_cos_turns(u: f64) -> (f64, f64) {

@@ -28,6 +28,22 @@ use crate::walk;
 ///
 /// # Cost
 /// A read of `modes` to check them, then one read-modify-write.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::noise::{Phase, Realisation, impose, white_modes};
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let mut modes = vec![0.0_f64; brick.reals()];
+/// white_modes(&mut modes, &brick, &Realisation::new(1), &Serial)?; // or the host's own
+/// let original = modes.clone();
+/// let inverted = Realisation { phase: Phase::Inverted, ..Realisation::new(0) };
+/// impose(&mut modes, &brick, &inverted, &Serial)?;
+/// assert!(modes.iter().zip(&original).all(|(a, b)| *a == -b));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn impose<T: Real>(modes: &mut [T], brick: &Brick, choice: &Realisation, exec: &dyn Exec) -> Result<()> {
     brick.check_space(Space::Fourier)?;
     check_finite(modes, brick, exec)?;
@@ -47,6 +63,23 @@ pub fn impose<T: Real>(modes: &mut [T], brick: &Brick, choice: &Realisation, exe
 ///
 /// # Cost
 /// One transform, two reads to check, one read-modify-write.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::fft::Fft3;
+/// use fixpair::noise::{Amplitude, Realisation, unit_modes_from_field};
+///
+/// let mut data: Vec<f64> = (0..fft.length()).map(|i| (i as f64 * 1.7).sin()).collect(); // white noise on the cells
+/// let fixed = Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(0) };
+/// unit_modes_from_field(&mut fft, &mut data, &fixed, &Serial)?;
+/// assert!((data[2].hypot(data[3]) - 1.0).abs() < 1e-14);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn unit_modes_from_field<T: Real>(
     fft: &mut dyn Fft3<T>,
     data: &mut [T],

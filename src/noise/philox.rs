@@ -14,6 +14,13 @@ const ROUNDS: u32 = 10;
 const LOW: u64 = 0xFFFF_FFFF;
 
 /// The block of `counter` under `key`.
+///
+/// ```
+/// use fixpair::noise::philox::philox4x32_10;
+///
+/// let words = philox4x32_10([0; 4], [0; 2]); // the first vector of Random123
+/// assert_eq!(words, [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]);
+/// ```
 #[must_use]
 #[inline]
 pub fn philox4x32_10(counter: [u32; 4], key: [u32; 2]) -> [u32; 4] {
@@ -55,6 +62,13 @@ pub struct Philox4x32 {
 
 impl Philox4x32 {
     /// The stream of `seed` that begins with the block of `counter`.
+    ///
+    /// ```
+    /// use fixpair::noise::philox::{Philox4x32, philox4x32_10};
+    ///
+    /// let stream = Philox4x32::at(0, [7, 0, 0, 0]);
+    /// assert_eq!(stream.counter(), [7, 0, 0, 0]);
+    /// ```
     #[must_use]
     pub fn at(seed: u64, counter: [u32; 4]) -> Self {
         let mut stream = Self { key: key_of(seed), counter: 0, block: [0; 4], used: 4 };
@@ -63,12 +77,26 @@ impl Philox4x32 {
     }
 
     /// Goes to the beginning of the block of `counter`.
+    ///
+    /// ```
+    /// use fixpair::noise::philox::Philox4x32;
+    ///
+    /// let mut stream = Philox4x32::at(1, [0; 4]);
+    /// stream.set_counter([9, 0, 0, 0]); // any place of the stream at once
+    /// assert_eq!(stream.counter(), [9, 0, 0, 0]);
+    /// ```
     pub fn set_counter(&mut self, counter: [u32; 4]) {
         self.counter = (0..4).map(|i| u128::from(counter[i]) << (32 * i)).sum();
         self.used = 4;
     }
 
     /// The counter of the next block that will be computed.
+    ///
+    /// ```
+    /// use fixpair::noise::philox::Philox4x32;
+    ///
+    /// assert_eq!(Philox4x32::at(1, [3, 2, 1, 0]).counter(), [3, 2, 1, 0]);
+    /// ```
     #[must_use]
     pub fn counter(&self) -> [u32; 4] {
         core::array::from_fn(|i| (self.counter >> (32 * i)) as u32)

@@ -134,6 +134,12 @@ pub struct Ranlxd1 {
 impl Ranlxd1 {
     /// The stream of a seed. The lower 32 bits count as a signed number of which the magnitude is taken, without its 31st bit;
     /// 0 stands for 1. So distinct streams have seeds in 1 ..= 2^31.
+    ///
+    /// ```
+    /// use fixpair::noise::ranlux::Ranlxd1;
+    ///
+    /// assert_eq!(Ranlxd1::new(0).uniform(), Ranlxd1::new(1).uniform()); // as in GSL
+    /// ```
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self::resume(Lanes::new([seed]), WORDS)
@@ -145,6 +151,14 @@ impl Ranlxd1 {
     }
 
     /// The next number: a multiple of 2^-48 in [0, 1).
+    ///
+    /// ```
+    /// use fixpair::noise::ranlux::Ranlxd1;
+    ///
+    /// let mut stream = Ranlxd1::new(5001);
+    /// let (first, second) = (stream.uniform(), stream.uniform());
+    /// assert!((0.0..1.0).contains(&first) && first != second);
+    /// ```
     #[inline]
     pub fn uniform(&mut self) -> f64 {
         uniform(self.word())

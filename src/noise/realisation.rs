@@ -86,6 +86,13 @@ pub struct Realisation {
 
 impl Realisation {
     /// Native, normal, original, Nyquist planes zero, no mode left out.
+    ///
+    /// ```
+    /// use fixpair::noise::{Amplitude, Phase, Realisation};
+    ///
+    /// let fixed_inverted = Realisation { amplitude: Amplitude::Fixed, phase: Phase::Inverted, ..Realisation::new(5) };
+    /// assert_eq!(fixed_inverted.seed, 5);
+    /// ```
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self { seed, ..Self::default() }

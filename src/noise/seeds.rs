@@ -41,6 +41,18 @@ fn for_each(n: usize, seed: u64, mut visit: impl FnMut([usize; 2], u32)) {
 ///
 /// # Cost
 /// The whole table is drawn for any brick: about 20 ns for each of n^2 entries.
+///
+/// # Example
+/// ```
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::noise::ngenic_seeds;
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let mut seeds = [0; 64]; // one a column (i, j)
+/// ngenic_seeds(&mut seeds, &brick, 5001)?;
+/// assert!(seeds.iter().any(|&seed| seed != seeds[0]));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ngenic_seeds(seeds: &mut [u32], brick: &Brick, seed: u64) -> Result<()> {
     brick.check_space(Space::Fourier)?;
     if brick.count()[0].checked_mul(brick.count()[1]) != Some(seeds.len()) {

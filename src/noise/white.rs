@@ -56,6 +56,21 @@ const SHORT: usize = 4;
 /// Salmon et al. 2011 (Philox); Box & Muller 1958; Angulo & Pontzen 2016 (arXiv:1603.05253); Eq. rayleigh and Eq. dirac of
 /// arXiv:2204.11103. Luescher 1994 (hep-lat/9309020) for ranlxd1; Springel et al. 2005 (N-GenIC), Crocce, Pueblas & Scoccimarro
 /// 2006 (2LPTic), Feng et al. 2016 (FastPM) for the schemes.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::noise::{Amplitude, Realisation, white_modes};
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let mut modes = vec![0.0_f64; brick.reals()];
+/// let fixed = Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) };
+/// white_modes(&mut modes, &brick, &fixed, &Serial)?;
+/// let [re, im] = [modes[2], modes[3]]; // (0, 0, 1)
+/// assert!((re * re + im * im - 1.0).abs() < 1e-15);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn white_modes<T: Real>(
     out: &mut [T],
     brick: &Brick,
@@ -73,6 +88,21 @@ pub fn white_modes<T: Real>(
 /// # Errors
 /// As [`white_modes`]; `Length` also if `amplitude` is too short, `NotFinite` if a factor is NaN or so large that 16
 /// times it is not finite in `T` (unit modes stay below 9). `out` is then untouched.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::noise::{Amplitude, Realisation, white_modes_coloured};
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let mut modes = vec![0.0_f64; brick.reals()];
+/// let fixed = Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) };
+/// let amplitude = [3.0; 49]; // by |n|^2
+/// white_modes_coloured(&mut modes, &brick, &fixed, &amplitude, &Serial)?;
+/// assert!((modes[2].hypot(modes[3]) - 3.0).abs() < 1e-14);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn white_modes_coloured<T: Real>(
     out: &mut [T],
     brick: &Brick,

@@ -29,6 +29,14 @@ impl<'a, T: Real> Positions<'a, T> {
     ///
     /// # Errors
     /// `Length` if the array is not made of triples.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::pm::Positions;
+    ///
+    /// assert_eq!(Positions::triples(&[1.0_f32, 2.0, 3.0, 4.0, 5.0, 6.0])?.len(), 2);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn triples(array: &'a [T]) -> Result<Self> {
         if !array.len().is_multiple_of(3) {
             return Err(Error::Length);
@@ -42,6 +50,14 @@ impl<'a, T: Real> Positions<'a, T> {
     ///
     /// # Errors
     /// `Length` if the arrays differ in length.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::pm::Positions;
+    ///
+    /// assert_eq!(Positions::separate([&[1.0_f32, 4.0], &[2.0, 5.0], &[3.0, 6.0]])?.len(), 2);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn separate(arrays: [&'a [T]; 3]) -> Result<Self> {
         let particles = arrays[0].len();
         if arrays.iter().any(|array| array.len() != particles) {
@@ -60,12 +76,26 @@ impl<'a, T: Real> Positions<'a, T> {
     }
 
     /// Particles.
+    ///
+    /// ```
+    /// use fixpair::pm::Positions;
+    ///
+    /// assert_eq!(Positions::triples(&[0.0_f64; 9])?.len(), 3);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub const fn len(&self) -> usize {
         self.particles
     }
 
     /// No particles?
+    ///
+    /// ```
+    /// use fixpair::pm::Positions;
+    ///
+    /// assert!(Positions::<f64>::triples(&[])?.is_empty());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.particles == 0
@@ -204,6 +234,19 @@ unsafe fn load_all<T: Real, const N: usize>(
 /// `Length` unless there are as many particles in both, `Hook`.
 ///
 /// Cost: one pass over both.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::initial::particles::Components;
+/// use fixpair::pm::{Positions, copy_components};
+///
+/// let (from, mut to) = ([1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [[0.0; 2]; 3]);
+/// let [x, y, z] = &mut to;
+/// copy_components(&mut Components::separate([x, y, z])?, &Positions::triples(&from)?, &Serial)?;
+/// assert_eq!(to, [[1.0, 4.0], [2.0, 5.0], [3.0, 6.0]]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn copy_components<T: Real>(
     to: &mut Components<'_, T>,
     from: &Positions<'_, T>,
@@ -244,6 +287,12 @@ unsafe impl<T: Real> Send for Column<'_, T> {}
 
 impl<'a, T: Real> Column<'a, T> {
     /// An array.
+    ///
+    /// ```
+    /// use fixpair::pm::Column;
+    ///
+    /// assert_eq!(Column::new(&[1.0_f32, 0.5]).len(), 2); // weights, one a particle
+    /// ```
     #[must_use]
     pub const fn new(array: &'a [T]) -> Self {
         Self { start: array.as_ptr(), stride: 1, length: array.len(), life: PhantomData }
@@ -259,12 +308,24 @@ impl<'a, T: Real> Column<'a, T> {
     }
 
     /// Particles.
+    ///
+    /// ```
+    /// use fixpair::pm::Column;
+    ///
+    /// assert_eq!(Column::new(&[1.0_f32, 0.5]).len(), 2);
+    /// ```
     #[must_use]
     pub const fn len(&self) -> usize {
         self.length
     }
 
     /// No particles?
+    ///
+    /// ```
+    /// use fixpair::pm::Column;
+    ///
+    /// assert!(Column::<f32>::new(&[]).is_empty());
+    /// ```
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.length == 0
@@ -298,6 +359,12 @@ unsafe impl<T: Real> Send for ColumnMut<'_, T> {}
 
 impl<'a, T: Real> ColumnMut<'a, T> {
     /// An array.
+    ///
+    /// ```
+    /// use fixpair::pm::ColumnMut;
+    ///
+    /// assert_eq!(ColumnMut::new(&mut [0.0_f32; 2]).len(), 2);
+    /// ```
     #[must_use]
     pub const fn new(array: &'a mut [T]) -> Self {
         Self { start: array.as_mut_ptr(), stride: 1, length: array.len(), life: PhantomData }
@@ -314,12 +381,24 @@ impl<'a, T: Real> ColumnMut<'a, T> {
     }
 
     /// Particles.
+    ///
+    /// ```
+    /// use fixpair::pm::ColumnMut;
+    ///
+    /// assert_eq!(ColumnMut::new(&mut [1.0_f32, 0.5]).len(), 2);
+    /// ```
     #[must_use]
     pub const fn len(&self) -> usize {
         self.length
     }
 
     /// No particles?
+    ///
+    /// ```
+    /// use fixpair::pm::ColumnMut;
+    ///
+    /// assert!(ColumnMut::<f32>::new(&mut []).is_empty());
+    /// ```
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.length == 0

@@ -30,6 +30,19 @@ use crate::within::Within;
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::pm::Region;
+///
+/// let brick = Brick::whole(8, Space::Configuration)?;
+/// let region = Region::from_brick(&brick)?;
+/// use fixpair::pm::{Window, deposit_scratch};
+///
+/// assert!(deposit_scratch::<f32>(&region, 1 << 30, Window::CloudInCell)?.size < 41_000_000);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn deposit_scratch<T: Real>(region: &Region, particles: usize, window: Window) -> Result<Layout> {
     // Tiles do not depend on the box or the shift.
     let frame = Frame::<T>::new(region, &Assignment { box_size: region.n() as f64, window, shift: 0.0 })?;
@@ -51,6 +64,26 @@ pub fn deposit_scratch<T: Real>(region: &Region, particles: usize, window: Windo
 ///
 /// The same bits for any number of threads; they may depend on the region, for addition rounds. Cost on one core, `f32`: 9, 11, 15 and 20 ns a
 /// particle for order 1 to 4 if neighbours in memory are neighbours in space, 21 to 38 ns in random order.
+///
+/// # Example
+/// ```
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::pm::Region;
+///
+/// let brick = Brick::whole(8, Space::Configuration)?;
+/// let region = Region::from_brick(&brick)?;
+/// use fixpair::exec::Serial;
+/// use fixpair::pm::{Assignment, Positions, Window, deposit};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let mut mesh = vec![0.0_f64; region.reals()];
+/// let assignment = Assignment { box_size: 8.0, window: Window::CloudInCell, shift: 0.0 };
+/// deposit(&mut mesh, &region, &Positions::triples(&[0.25, 0.0, 0.0])?, None, &assignment, scratch, &Serial)?;
+/// assert_eq!((mesh[0], mesh[80]), (0.75, 0.25));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn deposit<T: Real>(
     mesh: &mut [T],
     region: &Region,

@@ -36,6 +36,19 @@ pub struct Drift {
 /// are then written but meaningless.
 ///
 /// The same bits for any number of threads. Cost: one pass over positions, velocities and displacements.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::initial::particles::Components;
+/// use fixpair::pm::{Drift, Positions, drift};
+///
+/// let (mut x, v) = ([9.0, 5.0, 5.0], [2.0, 0.0, 0.0]);
+/// let step = Drift { velocity: 1.0, first: 0.0, second: 0.0 };
+/// drift(&mut Components::triples(&mut x)?, &Positions::triples(&v)?, 10.0, &step, None, &Serial)?;
+/// assert_eq!(x, [1.0, 5.0, 5.0]); // wrapped
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn drift<T: Real>(
     position: &mut Components<'_, T>,
     velocity: &Positions<'_, T>,

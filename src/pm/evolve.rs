@@ -59,6 +59,12 @@ pub struct Epoch {
 
 impl Epoch {
     /// Both at one time, as initial conditions are.
+    ///
+    /// ```
+    /// use fixpair::pm::evolve::Epoch;
+    ///
+    /// assert_eq!(Epoch::at(0.1).velocity, 0.1);
+    /// ```
     #[must_use]
     pub const fn at(scale_factor: f64) -> Self {
         Self { position: scale_factor, velocity: scale_factor }
@@ -89,6 +95,19 @@ pub struct Workshop<'a, T> {
 ///
 /// # Errors
 /// `Overflow`, and `Brick` for a mesh that is not whole.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::pm::{Window, evolve_scratch};
+///
+/// assert!(evolve_scratch::<f64>(&fft, 1 << 30, Window::CloudInCell)?.size < 75_000_000);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn evolve_scratch<T: Real>(fft: &dyn Fft3<T>, particles: usize, window: Window) -> Result<Layout> {
     let region = whole(fft)?;
     let needs = [

@@ -69,6 +69,13 @@ impl Stepper {
     ///
     /// # Errors
     /// See above.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::pm::factors::Stepper;
+    ///
+    /// assert!(Stepper::Cola { exponent: f64::NAN }.check().is_err());
+    /// ```
     pub fn check(&self) -> Result<()> {
         match *self {
             Self::Cola { exponent } if !exponent.is_finite() => Err(Error::NotFinite),
@@ -86,6 +93,16 @@ impl Stepper {
     /// As [`Stepper::check`] and [`growth_many`], for the three scale factors; `Convergence` if an integral is not accurate to 1e-12.
     ///
     /// Cost: 0.4 ms (one integration of the growth equations).
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    /// use fixpair::pm::factors::Stepper;
+    ///
+    /// let drift = Stepper::FastPm.drift(&Cosmology::goliat(), 0.5, 0.6, 0.55)?; // velocities of a = 0.55
+    /// assert!(drift.factor > 0.0 && drift.first == 0.0);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn drift(&self, cosmology: &Cosmology, from: f64, to: f64, at: f64) -> Result<StepFactors> {
         let epochs = self.epochs(cosmology, [from, to, at])?;
         let [start, end, known] = epochs;
@@ -110,6 +127,16 @@ impl Stepper {
     /// As [`Stepper::drift`].
     ///
     /// Cost: 0.4 ms.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::cosmology::Cosmology;
+    /// use fixpair::pm::factors::Stepper;
+    ///
+    /// let kick = Stepper::FastPm.kick(&Cosmology::goliat(), 0.5, 0.6, 0.55)?; // forces of a = 0.55
+    /// assert!(kick.factor != 0.0 && kick.second == 0.0);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn kick(&self, cosmology: &Cosmology, from: f64, to: f64, at: f64) -> Result<StepFactors> {
         let [start, end, known] = self.epochs(cosmology, [from, to, at])?;
         match *self {
@@ -203,6 +230,13 @@ impl Units {
 }
 
 /// Where half a step ends: the geometric mean.
+///
+/// ```
+/// use fixpair::pm::factors::half_step;
+///
+/// let middle = half_step(0.4, 0.6);
+/// assert!(0.4 < middle && middle < 0.6);
+/// ```
 #[must_use]
 pub fn half_step(from: f64, to: f64) -> f64 {
     libm::sqrt(from * to)
@@ -212,6 +246,16 @@ pub fn half_step(from: f64, to: f64) -> f64 {
 ///
 /// # Errors
 /// `NotFinite`; `Range` unless 0 < from < to; `Length` for fewer than two entries.
+///
+/// # Example
+/// ```
+/// use fixpair::pm::factors::linear_steps;
+///
+/// let mut a = [0.0; 3];
+/// linear_steps(&mut a, 0.5, 1.0)?;
+/// assert_eq!(a, [0.5, 0.75, 1.0]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn linear_steps(scale_factors: &mut [f64], from: f64, to: f64) -> Result<()> {
     steps(scale_factors, from, to, |part| from + (to - from) * part)
 }
@@ -220,6 +264,16 @@ pub fn linear_steps(scale_factors: &mut [f64], from: f64, to: f64) -> Result<()>
 ///
 /// # Errors
 /// As [`linear_steps`].
+///
+/// # Example
+/// ```
+/// use fixpair::pm::factors::logarithmic_steps;
+///
+/// let mut a = [0.0; 3];
+/// logarithmic_steps(&mut a, 0.25, 1.0)?;
+/// assert!((a[1] - 0.5).abs() < 1e-15);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn logarithmic_steps(scale_factors: &mut [f64], from: f64, to: f64) -> Result<()> {
     let (low, high) = (libm::log(from), libm::log(to));
     steps(scale_factors, from, to, |part| libm::exp(low + (high - low) * part))

@@ -30,6 +30,20 @@ struct Stretch {
 /// `Brick` if the meshes differ in n, `Length`, `Hook`.
 ///
 /// Cost: one pass over the shared cells.
+///
+/// # Example
+/// ```
+/// use fixpair::pm::Region;
+///
+/// let stride = [80, 10, 1];
+/// let (mine, other) = (Region::new(8, [0; 3], [4, 8, 8], stride)?, Region::new(8, [3, 0, 0], [2, 8, 8], stride)?);
+/// use fixpair::pm::add_cells;
+///
+/// let (mut cells, ghosts) = (vec![1.0_f64; mine.reals()], vec![2.0; other.reals()]); // ghosts came from a neighbour
+/// add_cells(&mut cells, &mine, &ghosts, &other, &fixpair::exec::Serial)?; // what both hold
+/// assert_eq!((cells[0], cells[3 * 80]), (1.0, 3.0));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn add_cells<T: Real>(
     target: &mut [T],
     target_region: &Region,
@@ -46,6 +60,20 @@ pub fn add_cells<T: Real>(
 /// As [`add_cells`].
 ///
 /// Cost: one pass over the shared cells.
+///
+/// # Example
+/// ```
+/// use fixpair::pm::Region;
+///
+/// let stride = [80, 10, 1];
+/// let (mine, other) = (Region::new(8, [0; 3], [4, 8, 8], stride)?, Region::new(8, [3, 0, 0], [2, 8, 8], stride)?);
+/// use fixpair::pm::copy_cells;
+///
+/// let (mut cells, from) = (vec![1.0_f64; mine.reals()], vec![2.0; other.reals()]);
+/// copy_cells(&mut cells, &mine, &from, &other, &fixpair::exec::Serial)?;
+/// assert_eq!((cells[0], cells[3 * 80]), (1.0, 2.0));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn copy_cells<T: Real>(
     target: &mut [T],
     target_region: &Region,

@@ -27,6 +27,19 @@ const BLOCK: usize = 64;
 /// `Brick` for a brick of configuration space, `Length`, `Hook`.
 ///
 /// The same bits on any threads and bricks. Cost: one pass; phases are products of two tabulated ones, right to 1e-15.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::pm::interlace;
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let (mut modes, shifted) = (vec![1.0_f64; brick.reals()], vec![1.0; brick.reals()]);
+/// interlace(&mut modes, &shifted, &brick, &Serial)?; // the mean of both, turned back by half a cell
+/// assert_eq!(modes[0], 1.0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn interlace<T: Real>(modes: &mut [T], shifted: &[T], brick: &Brick, exec: &dyn Exec) -> Result<()> {
     interlace_with(Simd::detect(), modes, shifted, brick, exec)
 }

@@ -49,6 +49,19 @@ pub struct Lpt<'a, T> {
 ///
 /// # Errors
 /// As [`deposit_scratch`].
+///
+/// # Example
+/// ```
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::pm::Region;
+///
+/// let brick = Brick::whole(8, Space::Configuration)?;
+/// let region = Region::from_brick(&brick)?;
+/// use fixpair::pm::{Window, kick_scratch};
+///
+/// assert!(kick_scratch::<f32>(&region, 1 << 30, Window::CloudInCell)?.size < 41_000_000);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn kick_scratch<T: Real>(region: &Region, particles: usize, window: Window) -> Result<Layout> {
     deposit_scratch::<T>(region, particles, window)
 }

@@ -24,6 +24,38 @@ use crate::status::{Error, Result};
 ///
 /// # Errors
 /// `Overflow`; `Brick` for a mesh that is not whole.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Wiggles};
+/// use fixpair::initial::conditions::{InitialConditions, Order};
+/// use fixpair::initial::{png::Local, shape::Shape};
+/// use fixpair::noise::{Amplitude, Realisation};
+///
+/// let cosmology = Cosmology::goliat();
+/// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+/// let conditions = InitialConditions {
+///     realisation: Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) },
+///     linear: Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?,
+///     cosmology,
+///     redshift: 32.0,
+///     box_size: 1000.0,
+///     local: Local { f_nl: 100.0, g_nl: 0.0 },
+///     shape: Shape::Local.rows(),
+///     species: None,
+///     convention: Convention::Cmb,
+///     order: Order::Second,
+/// };
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::pm::initial_conditions_at_scratch;
+///
+/// assert!(initial_conditions_at_scratch(conditions.parts(), 100, &fft, None)?.size > 0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn initial_conditions_at_scratch<T: Real>(
     parts: Parts,
     particles: usize,
@@ -46,6 +78,45 @@ pub fn initial_conditions_at_scratch<T: Real>(
 /// `NotFinite` for a position outputs are undefined.
 ///
 /// The same bits for any number of threads. Cost: that of `initial_conditions`, and three or six read-outs.
+///
+/// # Example
+/// ```
+/// use fixpair::cosmology::{Convention, Cosmology, EisensteinHu, Linear, Wiggles};
+/// use fixpair::initial::conditions::{InitialConditions, Order};
+/// use fixpair::initial::{png::Local, shape::Shape};
+/// use fixpair::noise::{Amplitude, Realisation};
+///
+/// let cosmology = Cosmology::goliat();
+/// let fit = EisensteinHu::new(&cosmology, Wiggles::With)?;
+/// let conditions = InitialConditions {
+///     realisation: Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) },
+///     linear: Linear::from_eisenstein_hu(fit, 0.96, 1.0)?.with_sigma8(0.8)?,
+///     cosmology,
+///     redshift: 32.0,
+///     box_size: 1000.0,
+///     local: Local { f_nl: 100.0, g_nl: 0.0 },
+///     shape: Shape::Local.rows(),
+///     species: None,
+///     convention: Convention::Cmb,
+///     order: Order::Second,
+/// };
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::particles::Components;
+/// use fixpair::pm::{Positions, initial_conditions_at};
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let (glass, mut x, mut v) = ([500.0, 500.0, 500.0], [0.0; 3], [0.0; 3]); // one particle of a glass
+/// let (mut position, mut velocity) = (Components::triples(&mut x)?, Components::triples(&mut v)?);
+/// let from = Positions::triples(&glass)?;
+/// initial_conditions_at(&mut position, &mut velocity, &from, &conditions, &mut fft, None, scratch, &Serial)?;
+/// assert!(x != glass && (x[0] - 500.0).abs() < 5.0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn initial_conditions_at<T: Real>(
     position: &mut Components<'_, T>,
     velocity: &mut Components<'_, T>,

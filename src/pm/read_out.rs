@@ -22,6 +22,19 @@ use crate::within::Within;
 ///
 /// # Errors
 /// As [`deposit_scratch`].
+///
+/// # Example
+/// ```
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::pm::Region;
+///
+/// let brick = Brick::whole(8, Space::Configuration)?;
+/// let region = Region::from_brick(&brick)?;
+/// use fixpair::pm::{Window, read_out_scratch};
+///
+/// assert!(read_out_scratch::<f32>(&region, 1 << 30, Window::CloudInCell)?.size < 41_000_000);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn read_out_scratch<T: Real>(region: &Region, particles: usize, window: Window) -> Result<Layout> {
     deposit_scratch::<T>(region, particles, window)
 }
@@ -36,6 +49,28 @@ pub fn read_out_scratch<T: Real>(region: &Region, particles: usize, window: Wind
 ///
 /// The same bits for any number of threads. Cost on one core, `f32`: 15, 17, 25 and 38 ns a particle for order 1 to 4 if neighbours in memory are
 /// neighbours in space, 43 to 78 ns in random order.
+///
+/// # Example
+/// ```
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::pm::Region;
+///
+/// let brick = Brick::whole(8, Space::Configuration)?;
+/// let region = Region::from_brick(&brick)?;
+/// use fixpair::exec::Serial;
+/// use fixpair::pm::{Assignment, ColumnMut, Positions, Window, read_out};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let (mut mesh, mut values) = (vec![0.0_f64; region.reals()], [0.0]);
+/// mesh[80] = 4.0; // cell (1, 0, 0)
+/// let assignment = Assignment { box_size: 8.0, window: Window::CloudInCell, shift: 0.0 };
+/// let at = Positions::triples(&[0.25, 0.0, 0.0])?;
+/// read_out(&mut ColumnMut::new(&mut values), &mesh, &region, &at, &assignment, scratch, &Serial)?;
+/// assert_eq!(values, [1.0]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn read_out<T: Real>(
     values: &mut ColumnMut<'_, T>,
     mesh: &[T],

@@ -23,6 +23,15 @@ impl Region {
     ///
     /// # Errors
     /// `Brick` if start is n or more, count more than n, or two cells share an address; else as [`Brick::general`].
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::pm::Region;
+    ///
+    /// let corner = Region::new(64, [60, 0, 0], [8, 64, 64], [64 * 64, 64, 1])?; // runs over the edge
+    /// assert_eq!(corner.reals(), 8 * 64 * 64);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn new(n: usize, start: [usize; 3], count: [usize; 3], stride: [usize; 3]) -> Result<Self> {
         let shape = Brick::general(n, Space::Configuration, [0; 3], count, stride)?;
         // An empty part at the end of the mesh is a brick, and begins where the mesh does.
@@ -36,6 +45,17 @@ impl Region {
     ///
     /// # Errors
     /// `Brick` for a brick of Fourier space.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    /// use fixpair::pm::Region;
+    ///
+    /// let brick = Brick::whole(8, Space::Configuration)?;
+    /// let region = Region::from_brick(&brick)?;
+    /// assert_eq!(region.reals(), brick.reals());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn from_brick(brick: &Brick) -> Result<Self> {
         brick.check_space(Space::Configuration)?;
         Self::new(brick.n(), brick.start(), brick.count(), brick.stride())
@@ -57,6 +77,22 @@ impl Region {
     ///
     /// # Errors
     /// `Brick` for a brick of Fourier space, `NotFinite` and `Range` for a shift outside [0, 1).
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    /// use fixpair::pm::Region;
+    ///
+    /// let brick = Brick::whole(8, Space::Configuration)?;
+    /// let region = Region::from_brick(&brick)?;
+    /// use fixpair::pm::Window;
+    ///
+    /// let slab = Brick::slab(8, Space::Configuration, 2, 4)?;
+    /// let ghosts = Region::with_ghosts(&slab, Window::CloudInCell, 0.0)?;
+    /// assert!(ghosts.count()[0] > 4);
+    /// # let _ = region;
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn with_ghosts(brick: &Brick, window: Window, shift: f64) -> Result<Self> {
         let owned = Self::from_brick(brick)?;
         check_shift(shift)?;
@@ -86,6 +122,16 @@ impl Region {
     }
 
     /// Cells on a side of the whole mesh.
+    ///
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    /// use fixpair::pm::Region;
+    ///
+    /// let brick = Brick::whole(8, Space::Configuration)?;
+    /// let region = Region::from_brick(&brick)?;
+    /// assert_eq!(region.n(), 8);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn n(&self) -> usize {
@@ -93,6 +139,16 @@ impl Region {
     }
 
     /// First cell on each axis.
+    ///
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    /// use fixpair::pm::Region;
+    ///
+    /// let brick = Brick::whole(8, Space::Configuration)?;
+    /// let region = Region::from_brick(&brick)?;
+    /// assert_eq!(region.start(), [0, 0, 0]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn start(&self) -> [usize; 3] {
@@ -100,6 +156,16 @@ impl Region {
     }
 
     /// Cells on each axis.
+    ///
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    /// use fixpair::pm::Region;
+    ///
+    /// let brick = Brick::whole(8, Space::Configuration)?;
+    /// let region = Region::from_brick(&brick)?;
+    /// assert_eq!(region.count(), [8, 8, 8]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn count(&self) -> [usize; 3] {
@@ -107,6 +173,16 @@ impl Region {
     }
 
     /// Reals from one cell to the next on each axis.
+    ///
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    /// use fixpair::pm::Region;
+    ///
+    /// let brick = Brick::whole(8, Space::Configuration)?;
+    /// let region = Region::from_brick(&brick)?;
+    /// assert_eq!(region.stride(), [80, 10, 1]);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     #[inline]
     pub const fn stride(&self) -> [usize; 3] {
@@ -114,12 +190,32 @@ impl Region {
     }
 
     /// Does it hold nothing?
+    ///
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    /// use fixpair::pm::Region;
+    ///
+    /// let brick = Brick::whole(8, Space::Configuration)?;
+    /// let region = Region::from_brick(&brick)?;
+    /// assert!(!region.is_empty());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.shape.is_empty()
     }
 
     /// Reals from the first cell to the end of the last: the least length of its array.
+    ///
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    /// use fixpair::pm::Region;
+    ///
+    /// let brick = Brick::whole(8, Space::Configuration)?;
+    /// let region = Region::from_brick(&brick)?;
+    /// assert_eq!(region.reals(), 638); // to the last cell
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     #[must_use]
     pub fn reals(&self) -> usize {
         self.shape.reals()
@@ -129,6 +225,17 @@ impl Region {
     ///
     /// # Errors
     /// See above.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::mesh::{Brick, Space};
+    /// use fixpair::pm::Region;
+    ///
+    /// let brick = Brick::whole(8, Space::Configuration)?;
+    /// let region = Region::from_brick(&brick)?;
+    /// assert!(region.check_length(&[0.0_f32; 8]).is_err());
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn check_length<T>(&self, data: &[T]) -> Result<()> {
         self.shape.check_length(data)
     }

@@ -38,6 +38,12 @@ impl Window {
         [Self::NearestGridPoint, Self::CloudInCell, Self::TriangularShapedCloud, Self::PiecewiseCubicSpline];
 
     /// Cells that it touches on an axis: p.
+    ///
+    /// ```
+    /// use fixpair::pm::Window;
+    ///
+    /// assert_eq!(Window::CloudInCell.order(), 2);
+    /// ```
     #[must_use]
     #[inline]
     pub const fn order(self) -> usize {

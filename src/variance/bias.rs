@@ -62,6 +62,16 @@ pub enum Spectrum {
 ///
 /// # Errors
 /// `Length` for arrays of different lengths, `NotFinite`, `Range` for alpha or delta_c that is not positive, or a result that overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::bias::{Bias, bias_of_k};
+///
+/// let (galaxies, mut b) = (Bias { b_g: 2.32, p: 1.0, f_nl: 100.0, delta_c: 1.686 }, [0.0]);
+/// bias_of_k(&mut b, &galaxies, &[1050.4])?; // alpha at k = 0.01 h/Mpc, z = 1 and T = 1
+/// assert!((b[0] - 2.32 - 0.4237).abs() < 1e-4);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bias_of_k(out: &mut [f64], parameters: &Bias, alpha: &[f64]) -> Result<()> {
     same_length(out.len(), &[alpha.len()])?;
     parameters.check()?;
@@ -73,6 +83,16 @@ pub fn bias_of_k(out: &mut [f64], parameters: &Bias, alpha: &[f64]) -> Result<()
 ///
 /// # Errors
 /// As [`bias_of_k`].
+///
+/// # Example
+/// ```
+/// use fixpair::variance::bias::{Bias, Spectrum, halo_power};
+///
+/// let (galaxies, mut power) = (Bias { b_g: 2.0, p: 1.0, f_nl: 0.0, delta_c: 1.686 }, [0.0]);
+/// halo_power(&mut power, &galaxies, Spectrum::HaloHalo, &[1000.0], &[1050.0])?;
+/// assert_eq!(power, [4000.0]); // b^2 P
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn halo_power(
     out: &mut [f64],
     parameters: &Bias,
@@ -98,6 +118,16 @@ pub fn halo_power(
 /// # Errors
 /// `Length` for arrays of different lengths, `NotFinite`, `Range` for P_lin or sigma that is not positive, P_hh that is not positive, or a result that
 /// overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::bias::{Spectrum, measured_bias};
+///
+/// let (mut b, mut error) = ([0.0], [0.0]);
+/// measured_bias(&mut b, &mut error, Spectrum::HaloHalo, &[4000.0], &[80.0], &[1000.0])?;
+/// assert!((b[0] - 2.0).abs() < 1e-14 && (error[0] - 0.02).abs() < 1e-14); // sigma/(2 b P)
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn measured_bias(
     out: &mut [f64],
     error: &mut [f64],

@@ -33,6 +33,14 @@ pub struct Carpool<'a> {
 ///
 /// # Errors
 /// `Overflow` for more than 65536 of either.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::carpool::carpool_scratch;
+///
+/// assert!(carpool_scratch(14, 14)?.size >= 3 * 14 * 14 * 8);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn carpool_scratch(values: usize, controls: usize) -> Result<Layout> {
     let columns = values.checked_add(1).ok_or(Error::Overflow)?;
     let right = columns.checked_mul(controls).ok_or(Error::Overflow)?;

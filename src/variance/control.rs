@@ -47,6 +47,16 @@ pub struct ControlVariate {
 /// # Errors
 /// `Length` for lists of different lengths, `Samples` for fewer than two, or four for [`Beta::Optimal`], `NotFinite`, `Range` for a negative error or a sum that overflows, `Singular` where
 /// y or c does not vary.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::control::{Beta, control_variate};
+///
+/// let (f100, f0) = ([104.0, 97.0, 99.0, 101.0], [4.0, -3.0, -1.0, 1.0]);
+/// let found = control_variate(&f100, &f0, 0.0, 0.0, Beta::Optimal)?;
+/// assert!((found.beta - 1.0).abs() < 1e-12 && (found.mean - 100.0).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn control_variate(y: &[f64], c: &[f64], mu: f64, error: f64, beta: Beta) -> Result<ControlVariate> {
     let moments = Moments::of(y, c)?;
     finite(&[mu])?;
@@ -86,6 +96,14 @@ pub fn control_variate(y: &[f64], c: &[f64], mu: f64, error: f64, beta: Beta) ->
 ///
 /// # Errors
 /// `Samples` unless N >= q + 3.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::control::control_variate_loss;
+///
+/// assert_eq!(control_variate_loss(12, 1)?, 10.0 / 9.0); // (N - 2)/(N - q - 2)
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn control_variate_loss(estimates: u64, controls: u64) -> Result<f64> {
     let needed = controls.checked_add(3).ok_or(Error::Samples)?;
     if estimates < needed {
@@ -99,6 +117,16 @@ pub fn control_variate_loss(estimates: u64, controls: u64) -> Result<f64> {
 ///
 /// # Errors
 /// `NotFinite`, `Range` for sigma_y = 0, negative scatter, |rho| > 1, or a gain that overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::control::control_variate_gain;
+///
+/// let plain = control_variate_gain(60.5, 47.0, 0.97, 1.0)?;
+/// let best = control_variate_gain(60.5, 47.0, 0.97, 0.97 * 60.5 / 47.0)?;
+/// assert!(best > plain && (best - 1.0 / (1.0 - 0.97 * 0.97)).abs() < 1e-9);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn control_variate_gain(sigma_y: f64, sigma_c: f64, correlation: f64, beta: f64) -> Result<f64> {
     not_negative(&[sigma_y, sigma_c])?;
     finite(&[correlation, beta])?;
@@ -117,6 +145,20 @@ pub fn control_variate_gain(sigma_y: f64, sigma_c: f64, correlation: f64, beta: 
 ///
 /// # Errors
 /// As [`control_variate`]; `values` is untouched by all of them.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::control::{Beta, ControlVariate, control_variates};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let (f100, f0) = ([104.0, 97.0, 99.0, 101.0], [4.0, -3.0, -1.0, 1.0]); // four samples of one value
+/// let mut found = [ControlVariate { mean: 0.0, error: 0.0, beta: 0.0, correlation: 0.0, deviation: 0.0, gain: 0.0 }];
+/// control_variates(&mut found, &f100, &f0, &[0.0], None, Beta::Given(1.0), scratch)?;
+/// assert!((found[0].mean - 100.0).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn control_variates(
     values: &mut [ControlVariate],
     y: &[f64],
@@ -155,6 +197,14 @@ pub fn control_variates(
 ///
 /// # Errors
 /// `Overflow` if it does not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::control::control_variates_scratch;
+///
+/// assert_eq!(control_variates_scratch(100)?.size, 1664); // 16 bytes a sample, in whole cache lines
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn control_variates_scratch(samples: usize) -> Result<crate::scratch::Layout> {
     crate::scratch::Layout::EMPTY.and::<f64>(samples)?.and::<f64>(samples)
 }

@@ -20,6 +20,14 @@ pub(super) fn square(side: usize) -> Result<usize> {
 ///
 /// # Errors
 /// `Overflow` for more than 65536 values.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::covariance::covariance_root_scratch;
+///
+/// assert!(covariance_root_scratch(14)?.size >= 14 * 14 * 8);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn covariance_root_scratch(values: usize) -> Result<Layout> {
     Layout::EMPTY.and::<f64>(square(values)?)?.and::<f64>(values)?.and::<u8>(dense::factor_bytes(values))
 }
@@ -32,6 +40,19 @@ pub fn covariance_root_scratch(values: usize) -> Result<Layout> {
 /// # Errors
 /// `Length` for arrays of other sizes, `NotFinite`, `Range` for a matrix that is not symmetric, `Singular` for one that is not positive definite to
 /// rounding: a covariance of N estimates is singular for values >= N. `root` is untouched by all of them.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::covariance::covariance_root;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let mut root = [0.0; 4];
+/// covariance_root(&mut root, &[4.0, 2.0, 2.0, 10.0], 2, scratch)?; // the lower triangle
+/// assert!((root[0] - 2.0).abs() < 1e-12 && (root[2] - 1.0).abs() < 1e-12 && (root[3] - 3.0).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn covariance_root(
     root: &mut [f64],
     covariance: &[f64],

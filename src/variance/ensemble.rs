@@ -37,6 +37,14 @@ const EXACT: f64 = 9_007_199_254_740_992.0;
 ///
 /// # Errors
 /// `Length` for no values, `Overflow` if the state does not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::{Moments, ensemble_length};
+///
+/// assert!(ensemble_length(14, Moments::Variance)? < ensemble_length(14, Moments::Covariance)?);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_length(values: usize, moments: Moments) -> Result<usize> {
     if values == 0 {
         return Err(Error::Length);
@@ -56,6 +64,16 @@ pub fn ensemble_length(values: usize, moments: Moments) -> Result<usize> {
 ///
 /// # Errors
 /// As [`ensemble_length`]; `Length` if the state does not have that many numbers.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::{Moments, ensemble_count, ensemble_init, ensemble_length};
+///
+/// let mut state = vec![0.0; ensemble_length(2, Moments::Variance)?];
+/// ensemble_init(&mut state, 2, Moments::Variance)?;
+/// assert_eq!(ensemble_count(&state)?, 0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_init(state: &mut [f64], values: usize, moments: Moments) -> Result<()> {
     same_length(state.len(), &[ensemble_length(values, moments)?])?;
     state.fill(0.0);
@@ -161,6 +179,17 @@ const WORTH: usize = 1 << 16;
 /// # Errors
 /// `Length` unless they are whole samples of as many values as the state has, `Version` for a state that [`ensemble_init`] did not make, `NotFinite`, and `Range`
 /// for values beyond [`LARGEST_SAMPLE`]. The state is untouched by all of them.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::*;
+///
+/// let mut state = vec![0.0; ensemble_length(2, Moments::Covariance)?];
+/// ensemble_init(&mut state, 2, Moments::Covariance)?;
+/// ensemble_add(&mut state, &[1.0, 10.0, 2.0, 20.0, 6.0, 30.0])?; // three samples of two values
+/// assert_eq!(ensemble_count(&state)?, 3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_add(state: &mut [f64], samples: &[f64]) -> Result<()> {
     let (_, values, moments) = head(state)?;
     if !samples.len().is_multiple_of(values) {
@@ -193,6 +222,19 @@ pub fn ensemble_add(state: &mut [f64], samples: &[f64]) -> Result<()> {
 ///
 /// # Errors
 /// `Length` for a state of other samples, `Version` as [`ensemble_add`]. The state is untouched by both.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::*;
+///
+/// let mut state = vec![0.0; ensemble_length(2, Moments::Covariance)?];
+/// ensemble_init(&mut state, 2, Moments::Covariance)?;
+/// ensemble_add(&mut state, &[1.0, 10.0, 2.0, 20.0, 6.0, 30.0])?; // three samples of two values
+/// let other = state.clone(); // another process's
+/// ensemble_merge(&mut state, &other)?;
+/// assert_eq!(ensemble_count(&state)?, 6);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_merge(state: &mut [f64], other: &[f64]) -> Result<()> {
     let (count, values, moments) = head(state)?;
     let from = view(other)?;
@@ -219,6 +261,17 @@ pub fn ensemble_merge(state: &mut [f64], other: &[f64]) -> Result<()> {
 ///
 /// # Errors
 /// `Length` or `Version` for a state that [`ensemble_init`] did not make.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::*;
+///
+/// let mut state = vec![0.0; ensemble_length(2, Moments::Covariance)?];
+/// ensemble_init(&mut state, 2, Moments::Covariance)?;
+/// ensemble_add(&mut state, &[1.0, 10.0, 2.0, 20.0, 6.0, 30.0])?; // three samples of two values
+/// assert_eq!(ensemble_count(&state)?, 3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_count(state: &[f64]) -> Result<u64> {
     Ok(view(state)?.count as u64)
 }
@@ -227,6 +280,19 @@ pub fn ensemble_count(state: &[f64]) -> Result<u64> {
 ///
 /// # Errors
 /// As [`ensemble_count`]; `Length` unless there is a place for each value; `Samples` without samples.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::*;
+///
+/// let mut state = vec![0.0; ensemble_length(2, Moments::Covariance)?];
+/// ensemble_init(&mut state, 2, Moments::Covariance)?;
+/// ensemble_add(&mut state, &[1.0, 10.0, 2.0, 20.0, 6.0, 30.0])?; // three samples of two values
+/// let mut mean = [0.0; 2];
+/// ensemble_mean(&mut mean, &state)?;
+/// assert_eq!(mean, [3.0, 20.0]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_mean(out: &mut [f64], state: &[f64]) -> Result<()> {
     let view = view(state)?;
     same_length(view.mean.len(), &[out.len()])?;
@@ -241,6 +307,19 @@ pub fn ensemble_mean(out: &mut [f64], state: &[f64]) -> Result<()> {
 ///
 /// # Errors
 /// As [`ensemble_mean`]; `Samples` for fewer than two.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::*;
+///
+/// let mut state = vec![0.0; ensemble_length(2, Moments::Covariance)?];
+/// ensemble_init(&mut state, 2, Moments::Covariance)?;
+/// ensemble_add(&mut state, &[1.0, 10.0, 2.0, 20.0, 6.0, 30.0])?; // three samples of two values
+/// let mut deviation = [0.0; 2];
+/// ensemble_deviation(&mut deviation, &state)?; // with N - 1
+/// assert!((deviation[1] - 10.0).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_deviation(out: &mut [f64], state: &[f64]) -> Result<()> {
     let view = view(state)?;
     same_length(view.mean.len(), &[out.len()])?;
@@ -252,6 +331,19 @@ pub fn ensemble_deviation(out: &mut [f64], state: &[f64]) -> Result<()> {
 ///
 /// # Errors
 /// As [`ensemble_deviation`].
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::*;
+///
+/// let mut state = vec![0.0; ensemble_length(2, Moments::Covariance)?];
+/// ensemble_init(&mut state, 2, Moments::Covariance)?;
+/// ensemble_add(&mut state, &[1.0, 10.0, 2.0, 20.0, 6.0, 30.0])?; // three samples of two values
+/// let mut error = [0.0; 2];
+/// ensemble_error_of_mean(&mut error, &state)?;
+/// assert!((error[1] - 10.0 / 3.0_f64.sqrt()).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_error_of_mean(out: &mut [f64], state: &[f64]) -> Result<()> {
     ensemble_deviation(out, state)?;
     let root = sqrt(state.at(0));
@@ -264,6 +356,19 @@ pub fn ensemble_error_of_mean(out: &mut [f64], state: &[f64]) -> Result<()> {
 ///
 /// # Errors
 /// As [`ensemble_deviation`]; `Range` for values that samples do not have; `Choice` for what a state of variances does not keep.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::*;
+///
+/// let mut state = vec![0.0; ensemble_length(2, Moments::Covariance)?];
+/// ensemble_init(&mut state, 2, Moments::Covariance)?;
+/// ensemble_add(&mut state, &[1.0, 10.0, 2.0, 20.0, 6.0, 30.0])?; // three samples of two values
+/// let mut covariance = [0.0; 4];
+/// ensemble_covariance(&mut covariance, &state, 0..2, 0..2)?;
+/// assert!((covariance[0] - 7.0).abs() < 1e-12 && covariance[1] == covariance[2]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_covariance(
     out: &mut [f64],
     state: &[f64],
@@ -277,6 +382,19 @@ pub fn ensemble_covariance(
 ///
 /// # Errors
 /// As [`ensemble_covariance`]; `Singular` where a value does not vary.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ensemble::*;
+///
+/// let mut state = vec![0.0; ensemble_length(2, Moments::Covariance)?];
+/// ensemble_init(&mut state, 2, Moments::Covariance)?;
+/// ensemble_add(&mut state, &[1.0, 10.0, 2.0, 20.0, 6.0, 30.0])?; // three samples of two values
+/// let mut correlation = [0.0; 4];
+/// ensemble_correlation(&mut correlation, &state, 0..2, 0..2)?;
+/// assert!((correlation[0] - 1.0).abs() < 1e-12 && correlation[1] > 0.9);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ensemble_correlation(
     out: &mut [f64],
     state: &[f64],

@@ -228,6 +228,24 @@ fn across(at: &Bias, alpha: f64, free: &Free) -> Bias {
 /// # Errors
 /// `NotFinite`, `Choice` for other sets of parameters, `Range` for delta_c that is not positive, `Singular` where the data do not constrain a parameter (p where f_NL = 0,
 /// f_NL where b_g = p), `Convergence` if no minimum is found at b_g > 0.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::bias::{Bias, Spectrum, halo_power};
+/// use fixpair::variance::likelihood::{BiasLikelihood, Spectra};
+///
+/// let truth = Bias { b_g: 2.0, p: 1.0, f_nl: 100.0, delta_c: 1.686 };
+/// let (linear, alpha, sigma, mut power) = ([2e4, 1e4, 5e3], [100.0, 1000.0, 4000.0], [900.0, 200.0, 50.0], [0.0; 3]);
+/// halo_power(&mut power, &truth, Spectrum::HaloHalo, &linear, &alpha)?; // or a measured one, without its shot noise
+/// let mut likelihood = BiasLikelihood::EMPTY;
+/// likelihood.add(Spectrum::HaloHalo, Spectra { power: &power, linear: &linear, alpha: &alpha }, &sigma)?;
+/// use fixpair::variance::fit::{FREE_B_G, FREE_F_NL, fit_bias};
+///
+/// let start = Bias { b_g: 1.5, f_nl: 0.0, ..truth };
+/// let fit = fit_bias(&likelihood, &start, FREE_B_G | FREE_F_NL)?;
+/// assert!((fit.value.f_nl - 100.0).abs() < 1e-4 && (fit.value.b_g - 2.0).abs() < 1e-6);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn fit_bias(likelihood: &BiasLikelihood, start: &Bias, free: u32) -> Result<BiasFit> {
     let free = Free::new(free)?;
     likelihood.check()?;

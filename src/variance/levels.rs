@@ -8,6 +8,15 @@ use crate::status::{Error, Result};
 ///
 /// # Errors
 /// `NotFinite`; `Range` for a probability outside (0, 1), or parameters other than 1 and 2.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::levels::delta_chi_squared;
+///
+/// assert!((delta_chi_squared(0.6827, 1)? - 1.0).abs() < 1e-3);
+/// assert!((delta_chi_squared(0.68, 2)? - 2.279).abs() < 1e-3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn delta_chi_squared(probability: f64, parameters: u32) -> Result<f64> {
     finite(&[probability])?;
     if !(probability > 0.0 && probability < 1.0) {
@@ -47,6 +56,14 @@ fn surplus(estimates: u64, values: u64, least: u64) -> Result<f64> {
 ///
 /// # Errors
 /// `Samples` unless N >= p + 3, `Range` for no values.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::levels::hartlap_factor;
+///
+/// assert_eq!(hartlap_factor(100, 14)?, 84.0 / 99.0); // (N - p - 2)/(N - 1) on the inverse covariance
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn hartlap_factor(estimates: u64, values: u64) -> Result<f64> {
     Ok((surplus(estimates, values, 2)? - 1.0) / (estimates - 1) as f64)
 }
@@ -57,6 +74,14 @@ pub fn hartlap_factor(estimates: u64, values: u64) -> Result<f64> {
 ///
 /// # Errors
 /// `Samples` unless N >= p + 5, `Range` for no values, no parameters, or more of them than values.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::levels::percival_factor;
+///
+/// assert!(percival_factor(100, 14, 2)? > 1.0); // on the variance of two parameters
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn percival_factor(estimates: u64, values: u64, parameters: u64) -> Result<f64> {
     if parameters == 0 || parameters > values {
         return Err(Error::Range);

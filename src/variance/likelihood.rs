@@ -76,6 +76,20 @@ impl BiasLikelihood {
     ///
     /// # Errors
     /// `Length` for arrays of different lengths, `NotFinite`, `Range` for sigma, P_lin or alpha that is not positive, `self` that no data have made, or numbers too extreme.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::variance::bias::{Bias, Spectrum, halo_power};
+    /// use fixpair::variance::likelihood::{BiasLikelihood, Spectra};
+    ///
+    /// let truth = Bias { b_g: 2.0, p: 1.0, f_nl: 100.0, delta_c: 1.686 };
+    /// let (linear, alpha, sigma, mut power) = ([2e4, 1e4, 5e3], [100.0, 1000.0, 4000.0], [900.0, 200.0, 50.0], [0.0; 3]);
+    /// halo_power(&mut power, &truth, Spectrum::HaloHalo, &linear, &alpha)?; // or a measured one, without its shot noise
+    /// let mut likelihood = BiasLikelihood::EMPTY;
+    /// likelihood.add(Spectrum::HaloHalo, Spectra { power: &power, linear: &linear, alpha: &alpha }, &sigma)?;
+    /// assert_eq!(likelihood.bins, 3);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn add(&mut self, spectrum: Spectrum, spectra: Spectra<'_>, sigma: &[f64]) -> Result<()> {
         self.check()?;
         spectra.check()?;
@@ -142,6 +156,22 @@ impl BiasLikelihood {
     ///
     /// # Errors
     /// `NotFinite` or `Range` for numbers that no data have made.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::variance::bias::{Bias, Spectrum, halo_power};
+    /// use fixpair::variance::likelihood::{BiasLikelihood, Spectra};
+    ///
+    /// let truth = Bias { b_g: 2.0, p: 1.0, f_nl: 100.0, delta_c: 1.686 };
+    /// let (linear, alpha, sigma, mut power) = ([2e4, 1e4, 5e3], [100.0, 1000.0, 4000.0], [900.0, 200.0, 50.0], [0.0; 3]);
+    /// halo_power(&mut power, &truth, Spectrum::HaloHalo, &linear, &alpha)?; // or a measured one, without its shot noise
+    /// let mut likelihood = BiasLikelihood::EMPTY;
+    /// likelihood.add(Spectrum::HaloHalo, Spectra { power: &power, linear: &linear, alpha: &alpha }, &sigma)?;
+    /// let other = likelihood; // another box
+    /// likelihood.merge(&other)?;
+    /// assert_eq!(likelihood.bins, 6);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn merge(&mut self, other: &Self) -> Result<()> {
         self.check()?;
         other.check()?;
@@ -155,6 +185,20 @@ impl BiasLikelihood {
     ///
     /// # Errors
     /// `NotFinite`, `Range` for delta_c that is not positive or a result that overflows.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::variance::bias::{Bias, Spectrum, halo_power};
+    /// use fixpair::variance::likelihood::{BiasLikelihood, Spectra};
+    ///
+    /// let truth = Bias { b_g: 2.0, p: 1.0, f_nl: 100.0, delta_c: 1.686 };
+    /// let (linear, alpha, sigma, mut power) = ([2e4, 1e4, 5e3], [100.0, 1000.0, 4000.0], [900.0, 200.0, 50.0], [0.0; 3]);
+    /// halo_power(&mut power, &truth, Spectrum::HaloHalo, &linear, &alpha)?; // or a measured one, without its shot noise
+    /// let mut likelihood = BiasLikelihood::EMPTY;
+    /// likelihood.add(Spectrum::HaloHalo, Spectra { power: &power, linear: &linear, alpha: &alpha }, &sigma)?;
+    /// assert!(likelihood.chi_squared(&truth)? < 1e-12);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn chi_squared(&self, parameters: &Bias) -> Result<f64> {
         self.check()?;
         parameters.check()?;
@@ -185,6 +229,14 @@ impl BiasLikelihood {
 ///
 /// # Errors
 /// `Overflow` if it does not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::likelihood::add_correlated_scratch;
+///
+/// assert!(add_correlated_scratch(14)?.size >= 14 * 8);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn add_correlated_scratch(bins: usize) -> Result<Layout> {
     Layout::EMPTY.and::<[f64; COLUMNS]>(bins)
 }

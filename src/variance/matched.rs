@@ -68,6 +68,15 @@ impl Moments {
 /// # Errors
 /// `Length` for lists of different lengths, `Samples` for fewer than two estimates, `NotFinite`, `Range` if a sum overflows, `Singular` where one of the
 /// two does not vary.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::matched::matched_difference;
+///
+/// let found = matched_difference(&[104.0, 97.0, 99.0, 101.0], &[3.0, -3.0, 0.0, 1.0])?;
+/// assert!(found.correlation > 0.9 && found.deviation < found.deviation_first / 2.0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn matched_difference(first: &[f64], second: &[f64]) -> Result<MatchedDifference> {
     let moments = Moments::of(first, second)?;
     let Moments { count, mean, squares } = moments;
@@ -94,6 +103,14 @@ pub fn matched_difference(first: &[f64], second: &[f64]) -> Result<MatchedDiffer
 ///
 /// # Errors
 /// `NotFinite`, `Range` for negative scatter, |rho| > 1, or a result that overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::matched::difference_sigma;
+///
+/// assert!((difference_sigma(12.1, 11.8, 0.76)? - 8.3).abs() < 0.05); // the paper's Fixed simulations
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn difference_sigma(first: f64, second: f64, correlation: f64) -> Result<f64> {
     not_negative(&[first, second])?;
     finite(&[correlation])?;
@@ -111,6 +128,15 @@ pub fn difference_sigma(first: f64, second: f64, correlation: f64) -> Result<f64
 ///
 /// # Errors
 /// `NotFinite`, `Range` for sigma that is not positive, no simulations, or a result that overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::matched::effective_volume;
+///
+/// assert!((effective_volume(60.5, 1, 12.1, 1)? - 25.0).abs() < 1e-9); // Fixed
+/// assert!((effective_volume(60.5, 1, 12.1, 2)? - 12.5).abs() < 1e-9); // at the cost of two simulations
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn effective_volume(
     reference: f64,
     reference_simulations: u64,
@@ -139,6 +165,16 @@ pub struct Estimate {
 ///
 /// # Errors
 /// `NotFinite`, `Range` for f_true = 0, negative errors, a covariance beyond the product of the errors, or a result that overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::matched::{Estimate, universality};
+///
+/// let b_g = Estimate { value: 2.32, error: 0.0 };
+/// let p = universality(b_g, Estimate { value: 109.2, error: 1.0 }, 0.0, 100.0)?;
+/// assert!((p.value - 0.8786).abs() < 1e-4); // b - (b - 1) f/f_true
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn universality(b_g: Estimate, f_nl: Estimate, covariance: f64, f_true: f64) -> Result<Estimate> {
     finite(&[b_g.value, f_nl.value, covariance, f_true])?;
     not_negative(&[b_g.error, f_nl.error])?;

@@ -26,6 +26,16 @@ use crate::within::Within;
 ///
 /// # Errors
 /// `Length` for arrays of different lengths, `NotFinite`, `Range` for numbers that are not positive or a result that over- or underflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::models::continuum_modes;
+///
+/// let mut modes = [0.0];
+/// continuum_modes(&mut modes, &[0.1], 0.01, 1000.0)?; // V k^2 dk/(2 pi^2)
+/// assert!((modes[0] - 5066.06).abs() < 0.01);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn continuum_modes(out: &mut [f64], k: &[f64], width: f64, box_size: f64) -> Result<()> {
     same_length(out.len(), &[k.len()])?;
     positive(&[width, box_size])?;
@@ -47,6 +57,16 @@ const REACH: u64 = 1 << 14;
 /// # Errors
 /// `Length` unless there is one number fewer than edges, `Table` for fewer than two edges or edges that do not increase, `Range` for an edge
 /// beyond 2^28.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::models::lattice_modes;
+///
+/// let mut modes = [0; 3];
+/// lattice_modes(&mut modes, &[1, 4, 9, 16])?;
+/// assert_eq!(modes, [26, 66, 158]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn lattice_modes(counts: &mut [u64], edges: &[u64]) -> Result<()> {
     if edges.len() < 2 || edges.windows(2).any(|pair| pair[0] >= pair[1]) {
         return Err(Error::Table);
@@ -79,6 +99,16 @@ pub fn lattice_modes(counts: &mut [u64], edges: &[u64]) -> Result<()> {
 /// # Errors
 /// `Length` for arrays of different lengths, `NotFinite`, `Range` for modes that are not positive, negative noise, P + noise that is not positive,
 /// or a result that overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::models::sigma_gaussian;
+///
+/// let mut sigma = [0.0];
+/// sigma_gaussian(&mut sigma, &[900.0], &[200.0], 100.0)?; // sqrt(2/N_k) (P + 1/n)
+/// assert!((sigma[0] - 100.0).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn sigma_gaussian(out: &mut [f64], power: &[f64], modes: &[f64], noise: f64) -> Result<()> {
     same_length(out.len(), &[power.len(), modes.len()])?;
     positive(modes)?;
@@ -124,6 +154,18 @@ pub(super) fn step(k: f64, softening: f64) -> f64 {
 ///
 /// # Errors
 /// As [`sigma_gaussian`]; `Range` for k or k_soft that is not positive, and for negative R_cv or f_sn.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::models::{Suppression, sigma_suppressed};
+///
+/// let left = Suppression { cosmic_variance: 0.1, softening: 0.05, shot_noise: 1.0 };
+/// let mut sigma = [0.0; 2];
+/// sigma_suppressed(&mut sigma, &left, &[1e-6, 10.0], &[1000.0; 2], &[200.0; 2], 0.0)?;
+/// assert!((sigma[0] - 10.0).abs() < 0.01); // a tenth of the Gaussian scatter at small k,
+/// assert!((sigma[1] - 100.0).abs() < 0.5); // all of it at large k
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn sigma_suppressed(
     out: &mut [f64],
     suppression: &Suppression,

@@ -9,6 +9,16 @@ use crate::within::Within;
 ///
 /// # Errors
 /// `Length` for arrays of different lengths, `NotFinite`.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::pairs::pair_average;
+///
+/// let mut average = [0.0; 2];
+/// pair_average(&mut average, &[110.0, 52.0], &[90.0, 48.0])?;
+/// assert_eq!(average, [100.0, 50.0]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn pair_average(out: &mut [f64], original: &[f64], inverted: &[f64]) -> Result<()> {
     same_length(out.len(), &[original.len(), inverted.len()])?;
     finite(original)?;
@@ -21,6 +31,14 @@ pub fn pair_average(out: &mut [f64], original: &[f64], inverted: &[f64]) -> Resu
 ///
 /// # Errors
 /// `Samples` for fewer than two.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::pairs::relative_error_of_deviation;
+///
+/// assert!((relative_error_of_deviation(41)? - 0.1118).abs() < 1e-4); // the paper's 41 simulations
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn relative_error_of_deviation(estimates: u64) -> Result<f64> {
     if estimates < 2 { Err(Error::Samples) } else { Ok(1.0 / sqrt(2.0 * (estimates - 1) as f64)) }
 }
@@ -33,6 +51,16 @@ pub fn relative_error_of_deviation(estimates: u64) -> Result<f64> {
 /// # Errors
 /// `Length` for arrays of different lengths, `Samples` for fewer than two estimates, `NotFinite`, `Range` for negative deviations, no
 /// simulations, or a result that overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::pairs::sigma_per_simulation;
+///
+/// let (mut sigma, mut error) = ([0.0], [0.0]);
+/// sigma_per_simulation(&mut sigma, &mut error, &[10.0], 41, 2)?; // of 41 averages of pairs
+/// assert!((sigma[0] - 14.142).abs() < 1e-3 && (error[0] - 1.581).abs() < 1e-3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn sigma_per_simulation(
     sigma: &mut [f64],
     error: &mut [f64],

@@ -411,6 +411,17 @@ pub fn bias_posterior_scratch(points: usize) -> Result<Layout> {
 ///
 /// # Errors
 /// As [`bias_range`] and [`read_posterior`]; `Range` for points outside [`POINTS`], `Scratch`.
+/// # Example
+/// ```
+/// # use fixpair::variance::{bias::*, fit::*, likelihood::*, posterior::bias_posterior};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// let (start, mut scratch) = (Bias { b_g: 1.5, p: 1.0, f_nl: 10.0, delta_c: 1.686 }, Memory([0; 1 << 16]));
+/// let spectra = Spectra { power: &[8e4, 4e4, 2e4], linear: &[2e4, 1e4, 5e3], alpha: &[100.0, 1000.0, 4000.0] };
+/// let mut likelihood = BiasLikelihood::EMPTY;
+/// likelihood.add(Spectrum::HaloHalo, spectra, &[900.0, 200.0, 50.0]).unwrap(); // P = 4 P_lin: b_g = 2, f_NL = 0
+/// let found = bias_posterior(&likelihood, &start, FREE_B_G | FREE_F_NL, 64, 0.68, &mut scratch.0).unwrap();
+/// assert!(found.posterior[1].peak.abs() < 0.1 * found.posterior[1].half_width);
+/// ```
 pub fn bias_posterior(
     likelihood: &BiasLikelihood,
     start: &Bias,

@@ -34,6 +34,17 @@ fn check_correlation(correlation: Option<&[f64]>, len: usize) -> Result<()> {
 ///
 /// # Errors
 /// `Length` for arrays of different lengths, `NotFinite`, `Range` for b = 0, negative errors, |rho| > 1, or a result that overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ratios::{Means, ratio_of_means};
+///
+/// let (fixed, normal) = (Means { mean: &[101.0], error: &[1.0] }, Means { mean: &[100.0], error: &[5.0] });
+/// let (mut ratio, mut error) = ([0.0], [0.0]);
+/// ratio_of_means(&mut ratio, &mut error, fixed, normal, None)?;
+/// assert!((ratio[0] - 1.01).abs() < 1e-12 && (error[0] - 0.0515).abs() < 1e-3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn ratio_of_means(
     ratio: &mut [f64],
     error: &mut [f64],
@@ -60,6 +71,17 @@ pub fn ratio_of_means(
 ///
 /// # Errors
 /// As [`ratio_of_means`]; `Range` for sigma that is not positive.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::ratios::{Means, difference_of_means};
+///
+/// let (fixed, normal) = (Means { mean: &[101.0], error: &[1.0] }, Means { mean: &[100.0], error: &[5.0] });
+/// let (mut difference, mut error) = ([0.0], [0.0]);
+/// difference_of_means(&mut difference, &mut error, fixed, normal, None, &[10.0])?; // in units of sigma
+/// assert!((difference[0] - 0.1).abs() < 1e-12);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn difference_of_means(
     difference: &mut [f64],
     error: &mut [f64],

@@ -21,6 +21,16 @@ const DOMAIN: u32 = u32::from_be_bytes(*b"boot");
 ///
 /// # Errors
 /// `Samples` for no estimates, `Overflow` for more than 2^33 draws.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::resample::bootstrap_indices;
+///
+/// let mut indices = [0; 12];
+/// bootstrap_indices(&mut indices, 12, 1, 0)?; // seed 1, the first replicate: the same on any machine
+/// assert!(indices.iter().all(|&i| i < 12));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bootstrap_indices(indices: &mut [u64], estimates: u64, seed: u64, replicate: u64) -> Result<()> {
     if estimates == 0 {
         return Err(Error::Samples);
@@ -43,6 +53,16 @@ pub fn bootstrap_indices(indices: &mut [u64], estimates: u64, seed: u64, replica
 ///
 /// # Errors
 /// `Length` if the samples are not whole rows, `Samples` without indices, `Range` for an index of no row, `NotFinite`.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::resample::resampled_mean;
+///
+/// let mut mean = [0.0; 2];
+/// resampled_mean(&mut mean, &[1.0, 10.0, 3.0, 30.0], &[0, 1, 1, 1])?; // two samples of two values
+/// assert_eq!(mean, [2.5, 25.0]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn resampled_mean(out: &mut [f64], samples: &[f64], indices: &[u64]) -> Result<()> {
     let values = out.len();
     let rows = rows_of(samples, values)?;
@@ -75,6 +95,16 @@ fn column(rows: &[f64], values: usize, i: usize) -> impl Iterator<Item = &f64> {
 ///
 /// # Errors
 /// `Length` unless both tables are the same whole rows of `values`, `Samples` for fewer than two rows, `NotFinite`, `Range` if a sum overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::resample::jackknife_means;
+///
+/// let mut deleted = [0.0; 3];
+/// jackknife_means(&mut deleted, &[1.0, 2.0, 6.0], 1)?; // each without one of the samples
+/// assert_eq!(deleted, [4.0, 3.5, 1.5]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn jackknife_means(out: &mut [f64], samples: &[f64], values: usize) -> Result<()> {
     same_length(out.len(), &[samples.len()])?;
     let rows = rows_of(samples, values)?;
@@ -106,6 +136,16 @@ pub fn jackknife_means(out: &mut [f64], samples: &[f64], values: usize) -> Resul
 ///
 /// # Errors
 /// `Length` for arrays that do not fit, `Samples` for fewer than two rows, `NotFinite`, `Range` if a result overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::resample::jackknife;
+///
+/// let (mut corrected, mut error) = ([0.0], [0.0]);
+/// jackknife(&mut corrected, &mut error, &[3.0], &[4.0, 3.5, 1.5])?; // of a mean: the error of the mean
+/// assert!((corrected[0] - 3.0).abs() < 1e-12 && (error[0] - 1.5275).abs() < 1e-4);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn jackknife(corrected: &mut [f64], error: &mut [f64], whole: &[f64], deleted: &[f64]) -> Result<()> {
     let values = whole.len();
     same_length(values, &[corrected.len(), error.len()])?;
@@ -129,6 +169,16 @@ pub fn jackknife(corrected: &mut [f64], error: &mut [f64], whole: &[f64], delete
 ///
 /// # Errors
 /// As [`jackknife`].
+///
+/// # Example
+/// ```
+/// use fixpair::variance::resample::jackknife_covariance;
+///
+/// let mut covariance = [0.0];
+/// jackknife_covariance(&mut covariance, &[4.0, 3.5, 1.5], 3, 1)?;
+/// assert!((covariance[0] - 7.0 / 3.0).abs() < 1e-12); // of the mean of 1, 2, 6
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn jackknife_covariance(
     covariance: &mut [f64],
     deleted: &[f64],

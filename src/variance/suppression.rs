@@ -236,6 +236,22 @@ pub fn fit_suppression_weighted(scatter: &Scatter<'_>, error: &[f64]) -> Result<
 ///
 /// # Errors
 /// As [`fit_suppression_weighted`]; `Samples` for fewer than two estimates; `Convergence` if the errors do not settle.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::models::{Suppression, sigma_suppressed};
+/// use fixpair::variance::suppression::{Scatter, fit_suppression};
+///
+/// let left = Suppression { cosmic_variance: 0.3, softening: 0.1, shot_noise: 0.8 };
+/// let k: Vec<f64> = (1..64).map(|b| 0.00628 * f64::from(b)).collect();
+/// let (power, modes) = (k.iter().map(|k| 500.0 / k).collect::<Vec<_>>(), k.iter().map(|k| 1e6 * k * k).collect::<Vec<_>>());
+/// let mut sigma = vec![0.0; k.len()];
+/// sigma_suppressed(&mut sigma, &left, &k, &power, &modes, 4000.0)?;
+/// let scatter = Scatter { sigma: &sigma, k: &k, power: &power, modes: &modes, noise: 4000.0 };
+/// let fit = fit_suppression(&scatter, 41)?;
+/// assert!((fit.value.cosmic_variance - 0.3).abs() < 1e-3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn fit_suppression(scatter: &Scatter<'_>, estimates: u64) -> Result<SuppressionFit> {
     scatter.check()?;
     let relative = relative_error_of_deviation(estimates)?;

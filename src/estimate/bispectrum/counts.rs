@@ -110,6 +110,14 @@ fn points(z: usize) -> usize {
 ///
 /// # Errors
 /// As [`triangle_counts`].
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::triangle_counts_scratch;
+///
+/// assert!(triangle_counts_scratch(&[1, 4, 9], 16, &[[0, 0, 0]])?.size > 0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn triangle_counts_scratch(edges: &[u64], n: usize, triangles: &[Triangle]) -> Result<Layout> {
     Sizes::new(edges, n, triangles)?.layout()
 }
@@ -126,6 +134,20 @@ pub fn triangle_counts_scratch(edges: &[u64], n: usize, triangles: &[Triangle]) 
 ///
 /// Cost: with H = m/2, m the lesser of n and three times the upper radius, H^3/6 cells: 2 flops for each triangle, and 4 times the radius of
 /// each shell. For 40 shells of 3 k_f, n = 360 and 6350 triangles 22 Gflop.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::{triangle_counts, triangle_counts_scratch};
+/// use fixpair::exec::Serial;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 18]);
+/// # let mut memory = Memory([0; 1 << 18]);
+/// # let scratch = &mut memory.0;
+///
+/// let mut counts = [0];
+/// triangle_counts(&mut counts, &[[0, 0, 0]], &[3, 21], 16, scratch, &Serial)?; // ordered triples of modes that close
+/// assert_eq!(counts, [54066]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn triangle_counts(
     counts: &mut [u64],
     triangles: &[Triangle],

@@ -46,6 +46,19 @@ pub(super) fn squares_below(r: u64) -> u64 {
 /// planes (hi > (n/2)^2). `Hook` as [`Exec::parallel_for`]. `out` is untouched by all but the last.
 ///
 /// Cost: `out` is written once; of `modes` only the shell is read.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::shell_modes;
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+///
+/// let brick = Brick::whole(8, Space::Fourier)?;
+/// let (modes, mut shell) = (vec![1.0_f64; brick.reals()], vec![0.0; brick.reals()]);
+/// shell_modes(&mut shell, &modes, &brick, 1, 4, &Serial)?; // 1 <= |n|^2 < 4
+/// assert_eq!((shell[0], shell[2], shell[4]), (0.0, 1.0, 0.0));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn shell_modes<T: Real>(
     out: &mut [T],
     modes: &[T],

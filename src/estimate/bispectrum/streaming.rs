@@ -24,6 +24,19 @@ const NONE: u32 = u32::MAX;
 ///
 /// # Errors
 /// `Overflow` if they do not fit the address space.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::estimate::bispectrum::bispectrum_meshes;
+///
+/// assert!(bispectrum_meshes::<f64>(&fft, 3)? >= 3 * 8 * 8 * 10); // reals of three meshes
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bispectrum_meshes<T: Real>(fft: &dyn Fft3<T>, count: usize) -> Result<usize> {
     let reals = apart(fft).checked_mul(count).ok_or(Error::Overflow)?;
     Layout::EMPTY.and::<T>(reals).map(|_| reals)
@@ -37,6 +50,19 @@ fn apart<T: Real>(fft: &dyn Fft3<T>) -> usize {
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::estimate::bispectrum::bispectrum_scratch;
+///
+/// assert!(bispectrum_scratch::<f64>(&fft, 2, 4)?.size > 0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bispectrum_scratch<T: Real>(fft: &dyn Fft3<T>, shells: usize, triangles: usize) -> Result<Layout> {
     let layout = Layout::EMPTY.and::<ExactSum>(triangles)?.and::<u32>(triangles)?;
     let layout = layout.and::<u32>(shells)?.and::<u32>(shells)?.and::<[u32; 2]>(shells)?;

@@ -225,6 +225,15 @@ impl<T: Real> Plane<'_, '_, T> {
 ///
 /// # Errors
 /// `Brick` for a brick of Fourier space, `Overflow` if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::bispectrum_sums_scratch;
+/// use fixpair::mesh::{Brick, Space};
+///
+/// assert!(bispectrum_sums_scratch::<f32>(&Brick::whole(8, Space::Configuration)?, 2, 4)?.size > 0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bispectrum_sums_scratch<T: Real>(brick: &Brick, shells: usize, triangles: usize) -> Result<Layout> {
     brick.check_space(Space::Configuration)?;
     let layout = Layout::EMPTY.and::<ExactSum>(triangles)?.and::<u32>(triangles)?;

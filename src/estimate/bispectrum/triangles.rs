@@ -73,6 +73,17 @@ fn each(shells: usize, edges: &[u64], centres: Option<&[f64]>, mut visit: impl F
 ///
 /// # Errors
 /// `Table` for edges or centres that do not increase, `Length` unless there is one centre a shell, `NotFinite` for centres.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::closed_triangle_count;
+/// use fixpair::estimate::edges::uniform_edges;
+///
+/// let (mut edges, centres) = ([0; 41], core::array::from_fn::<_, 40, _>(|i| i as f64 + 1.0));
+/// uniform_edges(&mut edges, 1.5, 3.0)?;
+/// assert_eq!(closed_triangle_count(&edges, Some(&centres))?, 6350); // the paper's
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn closed_triangle_count(edges: &[u64], centres: Option<&[f64]>) -> Result<usize> {
     let shells = check(edges, centres)?;
     let mut count = 0;
@@ -88,6 +99,16 @@ pub fn closed_triangle_count(edges: &[u64], centres: Option<&[f64]>) -> Result<u
 ///
 /// # Errors
 /// As [`closed_triangle_count`]; `Length` unless `triangles` is as long as that says.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::closed_triangles;
+///
+/// let mut triangles = [[0; 3]; 4];
+/// closed_triangles(&mut triangles, &[1, 4, 9], Some(&[1.0, 2.0]))?;
+/// assert_eq!(triangles, [[0, 0, 0], [0, 0, 1], [0, 1, 1], [1, 1, 1]]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn closed_triangles(triangles: &mut [Triangle], edges: &[u64], centres: Option<&[f64]>) -> Result<()> {
     if triangles.len() != closed_triangle_count(edges, centres)? {
         return Err(Error::Length);
@@ -106,6 +127,16 @@ pub fn closed_triangles(triangles: &mut [Triangle], edges: &[u64], centres: Opti
 ///
 /// # Errors
 /// `Range` for a shell that does not exist, `Length` unless `triangles` has shells - shell entries.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::squeezed_triangles;
+///
+/// let mut triangles = [[0; 3]; 3];
+/// squeezed_triangles(&mut triangles, 0, 3)?; // (Delta k, k, k)
+/// assert_eq!(triangles, [[0, 0, 0], [0, 1, 1], [0, 2, 2]]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn squeezed_triangles(triangles: &mut [Triangle], shell: usize, shells: usize) -> Result<()> {
     if shell >= shells || u32::try_from(shells).is_err() {
         return Err(Error::Range);

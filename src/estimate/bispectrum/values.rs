@@ -14,6 +14,18 @@ fn check_finite(values: &[f64]) -> Result<()> {
 ///
 /// # Errors
 /// `Length` unless there is a value for each sum; `NotFinite` if a sum lost a term. `values` is untouched by both.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::bispectrum_values;
+/// use fixpair::estimate::exact::ExactSum;
+///
+/// let (mut sum, mut value) = (ExactSum::ZERO, [0.0]);
+/// sum.add(2.5);
+/// bispectrum_values(&mut value, &[sum])?;
+/// assert_eq!(value, [2.5]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bispectrum_values(values: &mut [f64], sums: &[ExactSum]) -> Result<()> {
     if values.len() != sums.len() {
         return Err(Error::Length);
@@ -91,6 +103,16 @@ fn combine(
 /// # Errors
 /// `Range` for a triangle of a shell without P and if a result overflows, `Length` unless there is a result for each triangle,
 /// `NotFinite` for P and noise. `out` is untouched by all of them.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::shot_noise;
+///
+/// let mut noise = [0.0];
+/// shot_noise(&mut noise, &[[0, 0, 1]], &[100.0, 50.0], 10.0)?; // P free of shot noise, and 1/n
+/// assert_eq!(noise, [(100.0 + 100.0 + 50.0) * 10.0 + 100.0]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn shot_noise(out: &mut [f64], triangles: &[Triangle], power: &[f64], noise: f64) -> Result<()> {
     check_finite(&[noise])?;
     combine(out, triangles, power, |[a, b, c], _| (a + b + c) * noise + noise * noise)
@@ -102,6 +124,16 @@ pub fn shot_noise(out: &mut [f64], triangles: &[Triangle], power: &[f64], noise:
 ///
 /// # Errors
 /// As [`shot_noise`]; `Length` unless there is a B for each triangle, `NotFinite` for B.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::reduced;
+///
+/// let mut q = [0.0];
+/// reduced(&mut q, &[3e4], &[[0, 0, 0]], &[100.0])?; // B/(P1 P2 + P2 P3 + P3 P1)
+/// assert_eq!(q, [1.0]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn reduced(out: &mut [f64], bispectrum: &[f64], triangles: &[Triangle], power: &[f64]) -> Result<()> {
     if bispectrum.len() != triangles.len() {
         return Err(Error::Length);

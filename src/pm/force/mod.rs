@@ -59,6 +59,14 @@ pub use law::{Difference, ForceLaw};
 ///
 /// # Errors
 /// `Overflow` if the bytes do not fit the address space.
+///
+/// # Example
+/// ```
+/// use fixpair::pm::force_scratch;
+///
+/// assert_eq!(force_scratch(64)?.size, 24 * 64);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn force_scratch(n: usize) -> Result<Layout> {
     Tables::layout(n)
 }
@@ -76,6 +84,26 @@ pub fn force_scratch(n: usize) -> Result<Layout> {
 ///
 /// The same bits on any threads and bricks; `f32` modes are the rounded results of `f64` arithmetic. Cost: one pass, which reads one mesh and writes
 /// three.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// let modes = Brick::whole(8, Space::Fourier)?;
+/// let mut delta = vec![0.0; fft.length()];
+/// delta[2] = 0.01; // the mode (0, 0, 1) of a density contrast
+/// use fixpair::pm::{ForceLaw, forces};
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let (mut y, mut z) = (vec![0.0; fft.length()], vec![0.0; fft.length()]);
+/// forces([&mut delta, &mut y, &mut z], &modes, &ForceLaw::default(), 100.0, 1.0, scratch, &Serial)?; // x is the density at first
+/// assert!(y[3] == 0.0 && z[3] != 0.0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn forces<T: Real>(
     meshes: [&mut [T]; 3],
     brick: &Brick,
@@ -120,6 +148,26 @@ pub(super) fn forces_with<T: Real>(
 /// As [`forces`]; `Range` for an axis above 2.
 ///
 /// Cost: one pass, which reads one mesh and writes one.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// let modes = Brick::whole(8, Space::Fourier)?;
+/// let mut delta = vec![0.0; fft.length()];
+/// delta[2] = 0.01; // the mode (0, 0, 1) of a density contrast
+/// use fixpair::pm::{ForceLaw, force};
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let mut along_z = vec![0.0_f64; fft.length()];
+/// force(&mut along_z, &delta, &modes, 2, &ForceLaw::default(), 100.0, 1.0, scratch, &Serial)?;
+/// assert!(along_z[3].abs() > 0.0 && along_z[2] == 0.0); // i k/k^2 delta
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn force<T: Real>(
     out: &mut [T],
     density: &[T],
@@ -171,6 +219,26 @@ pub(super) fn force_with<T: Real>(
 /// As [`forces`], with L^2/(n^2 mass) a normal number too.
 ///
 /// Cost: one pass over one mesh.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// let modes = Brick::whole(8, Space::Fourier)?;
+/// let mut delta = vec![0.0; fft.length()];
+/// delta[2] = 0.01; // the mode (0, 0, 1) of a density contrast
+/// use fixpair::pm::{ForceLaw, potential};
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// potential(&mut delta, &modes, &ForceLaw::default(), 100.0, 1.0, scratch, &Serial)?;
+/// let k = std::f64::consts::TAU / 100.0;
+/// assert!((delta[2] + 0.01 / (k * k)).abs() < 1e-10); // -delta/k^2
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn potential<T: Real>(
     modes: &mut [T],
     brick: &Brick,
