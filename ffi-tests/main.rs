@@ -4,6 +4,7 @@
 //! `fixpair.h` and compare, bit for bit; then they try every bad input that the header speaks of. [`native`] builds the
 //! libraries and the programs, [`programs`] runs them. [`pages`] compiles the code of a page.
 
+mod allocations;
 mod header;
 mod native;
 mod pages;

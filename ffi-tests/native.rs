@@ -1,5 +1,6 @@
 //! Builds what the programs need: the static, the shared and the freestanding library, once each, and the programs themselves.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
@@ -63,7 +64,7 @@ pub(crate) fn run(command: &mut Command) -> Output {
 }
 
 /// Runs a command that may fail, but not be missing.
-pub(crate) fn attempt(command: &mut Command) -> Output {
+fn attempt(command: &mut Command) -> Output {
     command.output().unwrap_or_else(|error| {
         panic!(
             "cannot run {command:?}: {error}. The tests need a C compiler (cc or CC), a C++ compiler (c++ or CXX), \
@@ -119,4 +120,16 @@ pub(crate) fn shared_program(language: Language, source: &str, name: &str) -> Pa
     command.arg("-L").arg(LIBRARIES.as_os_str()).arg(shared_library());
     run(&mut command);
     program
+}
+
+/// The functions that the header declares.
+pub(crate) fn declared() -> BTreeSet<String> {
+    let header = std::fs::read_to_string(root().join("include/fixpair.h")).expect("the header");
+    let code = header.lines().filter(|line| !line.trim_start().starts_with(['*', '/', '#']));
+    let names = code.filter_map(|line| {
+        let (before, _) = line.split_once('(')?;
+        let name = before.rsplit([' ', '*']).next()?;
+        name.starts_with("fixpair_").then(|| name.to_owned())
+    });
+    names.collect()
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::process::Command;
 
 use crate::native::{
-    FREESTANDING, Language, SYSTEM, attempt, compiler, folder, program, root, run, shared_library,
-    shared_program, tool,
+    FREESTANDING, Language, compiler, declared, folder, program, root, run, shared_library, shared_program,
+    tool,
 };
 use crate::vectors::VECTORS;
 
@@ -36,6 +36,11 @@ fn python_gets_the_bits_of_rust() {
     let mut python = tool("PYTHON", "python3");
     python.arg("-B").arg(root().join("ffi-tests/test_ctypes.py")).arg(shared_library());
     run(python.arg(&*VECTORS).arg(root().join("include/fixpair.h")));
+}
+
+#[test]
+fn threads_of_a_host_share_the_library() {
+    run(&mut Command::new(program(Language::C, "concurrent.c", "concurrent", &["-pthread"])));
 }
 
 #[test]
@@ -95,18 +100,6 @@ fn undefined(file: &Path) -> BTreeSet<String> {
     symbols.map(|symbol| symbol.trim_start_matches('_').to_owned()).collect()
 }
 
-/// The functions that the header declares.
-fn declared() -> BTreeSet<String> {
-    let header = std::fs::read_to_string(root().join("include/fixpair.h")).expect("the header");
-    let code = header.lines().filter(|line| !line.trim_start().starts_with(['*', '/', '#']));
-    let names = code.filter_map(|line| {
-        let (before, _) = line.split_once('(')?;
-        let name = before.rsplit([' ', '*']).next()?;
-        name.starts_with("fixpair_").then(|| name.to_owned())
-    });
-    names.collect()
-}
-
 #[test]
 fn the_c_programs_call_every_function() {
     let declared = declared();
@@ -127,30 +120,6 @@ fn the_c_programs_call_every_function() {
         let missing = declared.iter().filter(|name| !called.contains(*name));
         let missing: Vec<_> = missing.filter(|name| !excepted.contains(&&name["fixpair_".len()..])).collect();
         assert!(missing.is_empty(), "{source} does not call {missing:?}");
-    }
-}
-
-/// The C programs once more, with the sanitizers of the compiler, where it has them.
-#[test]
-fn sanitizers_find_nothing() {
-    let options = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-pthread"];
-    let empty = folder().join("empty.c");
-    std::fs::write(&empty, "int main(void) { return 0; }\n").expect("the target folder can be written");
-    let mut trial = tool("CC", "cc");
-    trial.args(options).arg(&empty).args(SYSTEM).arg("-o").arg(folder().join("empty"));
-    if !attempt(&mut trial).status.success()
-        || !attempt(&mut Command::new(folder().join("empty"))).status.success()
-    {
-        println!("skipped: this C compiler has no address and undefined-behaviour sanitizers");
-        return;
-    }
-    for name in ["conformance", "refusals", "fuzz"] {
-        let sanitized = program(Language::C, &format!("{name}.c"), &format!("{name}_sanitized"), &options);
-        let mut command = Command::new(sanitized);
-        if name == "conformance" {
-            command.arg(&*VECTORS);
-        }
-        run(&mut command);
     }
 }
 
