@@ -35,6 +35,19 @@ pub(crate) fn functions() -> impl Iterator<Item = (&'static Named, Option<&'stat
     })
 }
 
+/// Their names.
+pub(crate) fn declared() -> BTreeSet<String> {
+    functions().map(|(function, _)| function.name.clone()).collect()
+}
+
+/// Those of a library without threads and matrices.
+pub(crate) fn kernels() -> BTreeSet<String> {
+    functions()
+        .filter(|(_, hidden_by)| hidden_by.is_none())
+        .map(|(function, _)| function.name.clone())
+        .collect()
+}
+
 /// A program in C and C++ that prints what the compiler makes of constants and structs.
 fn program() -> String {
     let mut includes = "#include <stddef.h>\n#include <stdio.h>\n#include \"fixpair.h\"\n".to_owned();
@@ -229,8 +242,7 @@ fn defined(library: &Path, options: &[&str]) -> BTreeSet<String> {
 #[cfg_attr(not(target_os = "linux"), ignore = "other systems have other tables and prefixes of symbols")]
 fn the_shared_library_exports_what_the_header_declares_and_nothing_else() {
     let exported = defined(&shared_library(), &["-D", "--defined-only", "--extern-only"]);
-    let declared: BTreeSet<_> = functions().map(|(function, _)| function.name.clone()).collect();
-    assert_eq!(exported, declared);
+    assert_eq!(exported, declared());
 }
 
 #[test]
@@ -240,6 +252,5 @@ fn a_library_without_features_lacks_what_the_macros_of_the_header_hide() {
     let symbols: BTreeSet<_> = symbols.into_iter().filter(|symbol| symbol.starts_with("fixpair_")).collect();
     let hidden: BTreeSet<_> = functions().filter_map(|(_, hidden_by)| hidden_by).collect();
     assert_eq!(hidden, BTreeSet::from(["FIXPAIR_NO_LINALG", "FIXPAIR_NO_THREADS"]));
-    let declared = functions().filter(|(_, hidden_by)| hidden_by.is_none());
-    assert_eq!(symbols, declared.map(|(function, _)| function.name.clone()).collect());
+    assert_eq!(symbols, kernels());
 }

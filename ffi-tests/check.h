@@ -11,6 +11,22 @@
 
 #include "fixpair.h"
 
+/* Around code of the host, in a hook too, that may allocate; allocations.h tells it from the library's. */
+#ifndef HOST_ENTER
+#define HOST_ENTER() ((void)0)
+#define HOST_LEAVE() ((void)0)
+#endif
+
+/* What Valgrind's memcheck cannot know. */
+#ifdef FIXPAIR_MEMCHECK
+#include <valgrind/memcheck.h>
+#define MEMORY_DEFINED(memory, size) ((void)VALGRIND_MAKE_MEM_DEFINED(memory, size))
+#define MEMORY_UNDEFINED(memory, size) ((void)VALGRIND_MAKE_MEM_UNDEFINED(memory, size))
+#else
+#define MEMORY_DEFINED(memory, size) ((void)0)
+#define MEMORY_UNDEFINED(memory, size) ((void)0)
+#endif
+
 static int check_failures = 0;
 static int check_checks = 0;
 
@@ -182,8 +198,10 @@ enum { CANARY = 64, CANARY_BYTE = 0xa5 };
 
 /* `size` bytes of zeros that begin on a cache line, with 64 bytes of canary before and after. */
 static inline void *take(size_t size) {
-    char *raw = (char *)malloc(size + 4 * CANARY);
-    char *start;
+    char *raw, *start;
+    HOST_ENTER();
+    raw = (char *)malloc(size + 4 * CANARY);
+    HOST_LEAVE();
     if (raw == NULL) {
         printf("out of memory\n");
         exit(2);
@@ -195,6 +213,14 @@ static inline void *take(size_t size) {
     memcpy(start - CANARY, &raw, sizeof raw);
     memcpy(start - CANARY + sizeof raw, &size, sizeof size);
     return start;
+}
+
+/* Scratch, of which nobody may know what is in it: every number NaN, or -1. */
+static inline void *take_scratch(size_t size) {
+    void *scratch = take(size);
+    memset(scratch, 0xff, size);
+    MEMORY_UNDEFINED(scratch, size);
+    return scratch;
 }
 
 static inline int canaries_live(const void *pointer) {
@@ -219,7 +245,9 @@ static inline void give_back(void *pointer) {
     char *raw;
     CHECK_CANARIES(pointer);
     memcpy(&raw, (char *)pointer - CANARY, sizeof raw);
+    HOST_ENTER();
     free(raw);
+    HOST_LEAVE();
 }
 
 #endif

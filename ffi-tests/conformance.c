@@ -8,6 +8,7 @@
 
 #include <math.h>
 
+#include "handovers.h"
 #include "hosts.h"
 
 /* NULL, the pool with 1, 2 and 5 threads, the host's own loop. */
@@ -246,7 +247,7 @@ static void tables(const fixpair_exec *exec) {
 int main(int count, char **arguments) {
     static const size_t sizes[POOLS] = {1, 2, 5};
     fixpair_threads *pool[POOLS];
-    fixpair_exec pools[POOLS], host;
+    fixpair_exec pools[POOLS], hooks[POOLS], host;
     const fixpair_exec *executors[EXECUTORS];
     size_t loops = 0, i;
     if (count != 2) {
@@ -257,7 +258,8 @@ int main(int count, char **arguments) {
     executors[0] = NULL;
     for (i = 0; i < POOLS; i++) {
         MUST(fixpair_threads_create(&pool[i], &pools[i], sizes[i]));
-        executors[1 + i] = &pools[i];
+        hooks[i] = followed(&pools[i]);
+        executors[1 + i] = &hooks[i];
     }
     host.context = &loops;
     host.parallel_for = posix_for;

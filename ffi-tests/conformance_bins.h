@@ -88,7 +88,7 @@ static void bins_and_triangles(const fixpair_exec *exec) {
     hash = hash_bytes(hash, centred, 3 * count * sizeof *centred);
     check_case("triangles", hash_bytes(hash, squeezed, sizeof squeezed));
     MUST(fixpair_triangle_counts_scratch(&layout, triangles, triangles_len, edges, SHELLS + 1, N));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     MUST(fixpair_triangle_counts(triangle_counts, triangles, triangles_len, edges, SHELLS + 1, N, scratch,
                                  layout.size, exec));
     check_case("triangle_counts", hash_bytes(hash_layout(HASH_START, layout), triangle_counts,

@@ -40,7 +40,7 @@ static int64_t *X(sums)(const REAL *const *fields, size_t length, const size_t *
     sums = (int64_t *)take(*words * sizeof *sums);
     parts = (int64_t *)take(*words * sizeof *parts);
     MUST(fixpair_power_sums_scratch(layout, brick, binning, pairs_len));
-    scratch = take(layout->size);
+    scratch = take_scratch(layout->size);
     MUST(X(fixpair_power_sums)(sums, *words, fields, 2, length, pairs, pairs_len, compensation, brick, binning,
                                scratch, layout->size, exec));
     give_back(scratch);
@@ -53,7 +53,7 @@ static int64_t *X(sums)(const REAL *const *fields, size_t length, const size_t *
         starts[1] = fields[1] + first * plane;
         MUST(fixpair_brick_slab(&slab, N, FIXPAIR_SPACE_FOURIER, first, planes));
         MUST(fixpair_power_sums_scratch(&needed, &slab, binning, pairs_len));
-        scratch = take(needed.size);
+        scratch = take_scratch(needed.size);
         MUST(X(fixpair_power_sums)(parts, *words, starts, 2, planes * plane, pairs, pairs_len, compensation, &slab,
                                    binning, scratch, needed.size, exec));
         give_back(scratch);
@@ -104,7 +104,7 @@ static void X(compensations)(const REAL *f, size_t length, const fixpair_brick *
     void *scratch;
     int aliased;
     MUST(fixpair_compensate_scratch(&layout, brick));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     hash = hash_layout(HASH_START, layout);
     memcpy(modes, f, length * sizeof(REAL));
     for (aliased = 0; aliased < 2; aliased++) {
@@ -130,7 +130,7 @@ static void X(correlations)(const REAL *f, const REAL *g, size_t length, const f
     void *scratch;
     int cross;
     MUST(fixpair_correlation_modes_scratch(&layout, brick));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     hash = hash_layout(HASH_START, layout);
     for (cross = 0; cross < 2; cross++) {
         meshes[cross] = X(reals)(length);
@@ -151,7 +151,7 @@ static void X(correlations)(const REAL *f, const REAL *g, size_t length, const f
     binning.second_edges_len = 4;
     MUST(fixpair_correlation_sums_scratch(&layout, &fft->configuration, &binning, 2));
     MUST(fixpair_binning_lengths(&bins, &values, &words, &binning, 2));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     sums = (int64_t *)take(words * sizeof *sums);
     both[0] = meshes[0];
     both[1] = meshes[1];
@@ -184,7 +184,7 @@ static void X(bispectra)(const REAL *modes, size_t length, const X(fixpair_fft) 
     check_named("shell_modes", "", SUFFIX, hash);
     MUST(X(fixpair_bispectrum_sums_scratch)(&layout, &fft->configuration, SHELLS, triangles_len));
     sizes = hash_layout(sizes, layout);
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     MUST(X(fixpair_bispectrum_sums)(sums, words, triangles, triangles_len, fields, SHELLS, length, &fft->configuration,
                                     scratch, layout.size, exec));
     check_named("bispectrum_sums", "", SUFFIX, hash_bytes(HASH_START, sums, size));
@@ -205,7 +205,7 @@ static void X(bispectra)(const REAL *modes, size_t length, const X(fixpair_fft) 
     give_back(scratch);
     MUST(X(fixpair_bispectrum_scratch)(&streaming, fft, SHELLS, triangles_len));
     sizes = hash_layout(sizes, streaming);
-    scratch = take(streaming.size);
+    scratch = take_scratch(streaming.size);
     for (meshes = 3; meshes <= SHELLS; meshes += SHELLS - 3) {
         size_t reals, transforms;
         REAL *memory;

@@ -71,7 +71,7 @@ static void X(forces)(const fixpair_exec *exec) {
     make_bricks(bricks);
     make_laws(laws);
     MUST(fixpair_force_scratch(&layout, N));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     for (b = 0; b < BRICKS; b++) {
         uint64_t hash = HASH_START, potentials = HASH_START;
         const fixpair_brick *brick = &bricks[b];
@@ -139,7 +139,7 @@ static void X(kicks_and_drifts)(const fixpair_exec *exec) {
             /* Without displacements, with those of one order, and of both. */
             int orders = window > 2 ? 2 : window - 1;
             MUST(X(fixpair_kick_scratch)(&layout, &region, X(MANY), window));
-            scratch = take(layout.size);
+            scratch = take_scratch(layout.size);
             MUST(X(fixpair_kick)(&both[1], &seen[0], mesh[0], mesh[1], mesh[2], length, &region, BOX, window,
                                  0.25 * (window - 1), 0.875, 2.5, orders > 0 ? 0.25 : 0.0, orders > 1 ? -0.125 : 0.0,
                                  orders > 0 ? &order[0] : NULL, orders > 1 ? &order[1] : NULL, scratch, layout.size, exec));
@@ -207,7 +207,7 @@ static void X(kicks_on_slabs)(const fixpair_exec *exec) {
         velocity.stride = 3;
         velocity.length = count[rank];
         MUST(X(fixpair_kick_scratch)(&layout, &wide[rank], count[rank], FIXPAIR_WINDOW_PCS));
-        scratch = take(layout.size);
+        scratch = take_scratch(layout.size);
         MUST(X(fixpair_kick)(&velocity, &position, ghost[0], ghost[1], ghost[2], wide_length, &wide[rank], BOX,
                              FIXPAIR_WINDOW_PCS, 0.5, 0.5, 1.5, 0.0, 0.0, NULL, NULL, scratch, layout.size, exec));
         hash = hash_bytes(hash, speeds, 3 * count[rank] * sizeof(REAL));

@@ -27,7 +27,7 @@ static void X(label)(uint64_t *labels, const X(fixpair_positions) *position, con
     void *scratch;
     size_t count = position->length;
     MUST(X(fixpair_fof_labels_scratch)(&layout, count));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     MUST(X(fixpair_fof_labels)(labels, count, position, ids, ids == NULL ? 0 : count, BOX, length, scratch, layout.size,
                                exec));
     give_back(scratch);
@@ -92,7 +92,7 @@ static void X(halos_on_slabs)(const uint64_t *ids, const uint64_t *named, const 
         fixpair_layout layout;
         void *scratch;
         MUST(fixpair_halos_scratch(&layout, owns[rank]));
-        scratch = take(layout.size);
+        scratch = take_scratch(layout.size);
         MUST(X(fixpair_halo_sums)(sums + sums_len, owns[rank] / LEAST_MEMBERS + entries, &count, labels[rank], owns[rank],
                                   &position, &velocity, BOX, LEAST_MEMBERS, map, entries, scratch, layout.size, exec));
         sums_len += count;
@@ -138,7 +138,7 @@ static void X(spheres)(const X(fixpair_positions) *position, const fixpair_halo 
         radii[i] = 2.0 * halos[i].radius < 20.0 ? 2.0 * halos[i].radius : 20.0;
     }
     MUST(X(fixpair_spheres_scratch)(&layout, CROWD));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     MUST(X(fixpair_refine_centres)(centres, count, radii, position, BOX, 0.975, 5, scratch, layout.size, exec));
     check_named("refine_centres", "", SUFFIX, hash_bytes(HASH_START, centres, 3 * count * sizeof *centres));
     MUST(X(fixpair_spheres)(spheres, DENSITIES * count, centres, count, densities, DENSITIES, position, BOX, CROWD, 1e10,
@@ -180,7 +180,7 @@ static void X(halos)(const fixpair_exec *exec) {
         hash = hash_bytes(hash_layout(HASH_START, layout), labels, CROWD * sizeof *labels);
         check_named("fof_labels", "", SUFFIX, hash_bytes(hash, named, CROWD * sizeof *named));
         MUST(fixpair_halos_scratch(&layout, CROWD));
-        scratch = take(layout.size);
+        scratch = take_scratch(layout.size);
         MUST(fixpair_halo_count(&groups, named, CROWD, LEAST_MEMBERS, scratch, layout.size, exec));
         check_named("halo_count", "", SUFFIX, hash_bytes(HASH_START, &groups, sizeof groups));
         hash = HASH_START;

@@ -21,7 +21,7 @@ static void X(universe_at)(const char *name, const fixpair_conditions *condition
     int kind, axis, side;
     size_t i;
     MUST(X(fixpair_initial_conditions_at_scratch)(&layout, conditions, X(OWN), fft, fine));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     for (kind = 0; kind < X(LAYOUTS); kind++) {
         /* Where the three triples begin, and from one component and one particle to the next. */
         size_t first = kind == X(MEMBERS) ? 1 : 0, apart = kind == X(MEMBERS) ? 3 : 3 * X(OWN);
@@ -99,7 +99,7 @@ static void X(lattice_of_its_own)(const fixpair_conditions *conditions, const X(
         of[i].length = PARTICLES;
     }
     MUST(X(fixpair_initial_conditions_at_scratch)(&layout, conditions, PARTICLES, fft, NULL));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     MUST(X(fixpair_initial_conditions)(&of[0], &of[1], conditions, fft, NULL, scratch, layout.size, exec));
     MUST(X(fixpair_initial_conditions_at)(&of[2], &of[3], &lattice, conditions, fft, NULL, scratch, layout.size, exec));
     for (i = 0; i < 6 * PARTICLES; i++) {

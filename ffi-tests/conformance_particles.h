@@ -11,7 +11,7 @@ static uint64_t X(put)(uint64_t hash, REAL *mesh, size_t length, const fixpair_b
     fixpair_layout layout;
     void *scratch;
     MUST(X(fixpair_deposit_scratch)(&layout, region, position->length, window));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     MUST(X(fixpair_deposit)(mesh, length, region, position, weights, weights_stride, BOX, window, shift, scratch,
                             layout.size, exec));
     give_back(scratch);
@@ -27,7 +27,7 @@ static uint64_t X(get)(uint64_t hash, const REAL *mesh, size_t length, const fix
     size_t i;
     int untouched = 1;
     MUST(X(fixpair_read_out_scratch)(&layout, region, position->length, window));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     MUST(X(fixpair_read_out)(values, 2, mesh, length, region, position, BOX, window, shift, scratch, layout.size,
                              exec));
     for (i = 0; i < position->length; i++) {

@@ -13,7 +13,7 @@ static void X(open)(X(built_in) *transform, size_t n, size_t padding, const fixp
     MUST(X(fixpair_fft_tables_scratch)(&tables, n));
     MUST(X(fixpair_fft_scratch)(&scratch, n));
     transform->tables = take(tables.size);
-    transform->scratch = take(scratch.size);
+    transform->scratch = take_scratch(scratch.size);
     MUST(X(fixpair_fft_tables_init)(transform->tables, tables.size, n));
     MUST(X(fixpair_fft_init)(&transform->fft, transform->tables, tables.size, padding, transform->scratch,
                              scratch.size, exec));
@@ -141,7 +141,7 @@ static void X(local)(const char *name, const REAL *phi, const fixpair_brick *bri
     void *scratch;
     X(open)(&work, side, 0, exec);
     MUST(X(fixpair_add_local_scratch)(&layout, &work.fft));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     mesh = X(reals)(work.fft.length);
     memcpy(modes, phi, length * sizeof(REAL));
     MUST(X(fixpair_add_local)(modes, length, brick, 5000.0, g_nl, &work.fft, mesh, work.fft.length, scratch,
@@ -240,7 +240,7 @@ static void X(universe)(const char *name, const fixpair_conditions *conditions, 
     int kind, side, axis;
     size_t i;
     MUST(X(fixpair_initial_conditions_scratch)(&layout, conditions, fft, fine));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     for (kind = 0; kind < X(LAYOUTS); kind++) {
         REAL *memory = X(reals)(8 * PARTICLES);
         X(fixpair_components) both[2];

@@ -94,7 +94,7 @@ static void X(one_run)(const char *name, int which, size_t stop, int watched, co
     observer.context = &witness;
     observer.observe = X(observe);
     MUST(X(fixpair_evolve_scratch)(&layout, &transform->fft, count, gravity.window));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     do {
         status = X(fixpair_evolve)(&both[0], &both[1], &epoch, &gravity,
                                    gravity.stepper == FIXPAIR_STEPPER_COLA ? &displacements : NULL, steps, STEPS,

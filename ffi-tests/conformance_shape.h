@@ -11,7 +11,7 @@ static void X(shape)(const char *name, const REAL *phi, const fixpair_brick *bri
     void *scratch;
     X(open)(&work, side, 0, exec);
     MUST(X(fixpair_add_shape_scratch)(&layout, brick, &work.fft));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     memcpy(modes, phi, length * sizeof(REAL));
     MUST(X(fixpair_add_shape)(modes, length, brick, 5000.0, 0.96, rows, count, &work.fft, scratch, layout.size, exec));
     check_named("add_shape.", name, SUFFIX,

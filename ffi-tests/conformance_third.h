@@ -22,7 +22,7 @@ static void X(sources)(const fixpair_exec *exec) {
         out[i] = X(reals)(length);
     }
     MUST(X(fixpair_third_order_sources_scratch)(&layout, fft));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     MUST(X(fixpair_third_order_sources)(out[0], out[1], out[2], out[3], out[4], out[5], density, length, fft, scratch,
                                         layout.size, exec));
     hash = hash_layout(HASH_START, layout);
@@ -76,7 +76,7 @@ static void X(third_order_by_stages)(const fixpair_exec *exec) {
     }
     X(open)(&transform, N, 0, exec);
     MUST(X(fixpair_initial_conditions_scratch)(&layout, &conditions, fft, NULL));
-    scratch = take(layout.size);
+    scratch = take_scratch(layout.size);
     MUST(X(fixpair_initial_conditions)(&particles[0], &particles[1], &conditions, fft, NULL, scratch, layout.size, exec));
     MUST(fixpair_alpha_table(table, table_length, N, BOX, &conditions.cosmology, &conditions.linear, conditions.redshift,
                              conditions.convention, exec));

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::abi::functions;
+use crate::abi::kernels;
 use crate::native::{FREESTANDING, Language, attempt, compiler, folder, run};
 
 /// Undefined symbols of an object or archive, without the underscore that some platforms put before them.
@@ -13,11 +13,6 @@ pub(crate) fn undefined(file: &Path) -> BTreeSet<String> {
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
     let symbols = text.lines().filter_map(|line| line.split_whitespace().last());
     symbols.map(|symbol| symbol.trim_start_matches('_').to_owned()).collect()
-}
-
-/// Everything that a library without threads and matrices exports.
-fn kernels() -> BTreeSet<String> {
-    functions().filter(|(_, hidden)| hidden.is_none()).map(|(function, _)| function.name.clone()).collect()
 }
 
 /// Where the panic handler goes, which is nowhere.

@@ -1,6 +1,8 @@
 /*
  * Some thousand sets of parameters that nobody would choose: sizes, enumerations and numbers, never pointers. Every function that takes
  * such answers with one of its statuses, and no answer is a crash. The sequence is always the same.
+ *
+ * fuzz [ROUNDS]
  */
 #define _POSIX_C_SOURCE 200112L
 
@@ -241,7 +243,7 @@ static void universes(double *data, void *scratch, size_t scratch_len, const fix
 #include "fuzz_initial.h"
 #include "fuzz_variance.h"
 
-int main(void) {
+int main(int count, char **arguments) {
     double *data = (double *)take((2 * LENGTH + 2 * VALUES) * sizeof *data);
     float *single = (float *)take(LENGTH * sizeof *single);
     double *memory = (double *)take(BYTES);
@@ -250,7 +252,8 @@ int main(void) {
     fixpair_fft_f64 fft;
     fixpair_layout layout, work;
     void *tables, *workspace, *scratch;
-    int round;
+    const long rounds = count > 1 ? strtol(arguments[1], NULL, 10) : ROUNDS;
+    long round;
     MUST(fixpair_fft_tables_scratch_f64(&layout, 8));
     MUST(fixpair_fft_scratch_f64(&work, 8));
     tables = take(layout.size);
@@ -260,7 +263,7 @@ int main(void) {
     MUST(fixpair_conditions_init(&conditions, 1));
     MUST(fixpair_initial_conditions_scratch_f64(&layout, &conditions, &fft, NULL));
     scratch = take(layout.size);
-    for (round = 0; round < ROUNDS; round++) {
+    for (round = 0; round < rounds; round++) {
         sizes();
         meshes(data, single);
         clouds(data, single, memory);

@@ -37,16 +37,20 @@ static inline int32_t posix_for(void *context, size_t count, void (*body)(void *
         part[i].count = count;
         part[i].step = THREADS;
     }
+    HOST_ENTER();
     for (i = 1; i < THREADS; i++) {
         if (pthread_create(&thread[i], NULL, run_part, &part[i]) != 0) {
             printf("no thread\n");
             exit(2);
         }
     }
+    HOST_LEAVE();
     run_part(&part[0]);
+    HOST_ENTER();
     for (i = 1; i < THREADS; i++) {
         failed |= pthread_join(thread[i], NULL) != 0;
     }
+    HOST_LEAVE();
     ++*(size_t *)context;
     return failed;
 }

@@ -4,10 +4,12 @@
 //! `fixpair.h` and compare, bit for bit; then they try every bad input that the header speaks of. [`native`] builds the
 //! libraries and the programs, [`programs`] runs them, [`freestanding`] without a system. [`pages`] compiles the code of a page,
 //! [`five_minutes`] runs that of another. [`abi`] holds the interface to what was recorded of it.
+//! [`allocations`] counts those of each call.
 
 mod abi;
 mod abi_header;
 mod abi_structs;
+mod allocations;
 mod examples_of_functions;
 mod five_minutes;
 mod freestanding;

@@ -1,13 +1,10 @@
 //! Runs the programs. Each prints what does not hold and fails, and the test shows it.
 
-use std::collections::BTreeSet;
 use std::process::Command;
 
-use crate::abi::functions;
+use crate::abi::declared;
 use crate::freestanding::undefined;
-use crate::native::{
-    Language, SYSTEM, attempt, compiler, folder, program, root, run, shared_library, shared_program, tool,
-};
+use crate::native::{Language, compiler, folder, program, root, run, shared_library, shared_program, tool};
 use crate::vectors::VECTORS;
 
 #[test]
@@ -36,6 +33,11 @@ fn python_gets_the_bits_of_rust() {
     let mut python = tool("PYTHON", "python3");
     python.arg("-B").arg(root().join("ffi-tests/test_ctypes.py")).arg(shared_library());
     run(python.arg(&*VECTORS).arg(root().join("include/fixpair.h")));
+}
+
+#[test]
+fn threads_of_a_host_share_the_library() {
+    run(&mut Command::new(program(Language::C, "concurrent.c", "concurrent", &["-pthread"])));
 }
 
 #[test]
@@ -95,8 +97,7 @@ fn noise_of_ngenic_is_drawn_as_with_gsl() {
 
 #[test]
 fn the_c_programs_call_every_function() {
-    let declared: BTreeSet<_> = functions().map(|(function, _)| function.name.clone()).collect();
-    assert!(declared.len() > 50, "the header was read: {declared:?}");
+    let declared = declared();
     // These refuse nothing: any argument will do.
     let never = [
         "status_message",
@@ -113,29 +114,5 @@ fn the_c_programs_call_every_function() {
         let missing = declared.iter().filter(|name| !called.contains(*name));
         let missing: Vec<_> = missing.filter(|name| !excepted.contains(&&name["fixpair_".len()..])).collect();
         assert!(missing.is_empty(), "{source} does not call {missing:?}");
-    }
-}
-
-/// The C programs once more, with the sanitizers of the compiler, where it has them.
-#[test]
-fn sanitizers_find_nothing() {
-    let options = ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-pthread"];
-    let empty = folder().join("empty.c");
-    std::fs::write(&empty, "int main(void) { return 0; }\n").expect("the target folder can be written");
-    let mut trial = tool("CC", "cc");
-    trial.args(options).arg(&empty).args(SYSTEM).arg("-o").arg(folder().join("empty"));
-    if !attempt(&mut trial).status.success()
-        || !attempt(&mut Command::new(folder().join("empty"))).status.success()
-    {
-        println!("skipped: this C compiler has no address and undefined-behaviour sanitizers");
-        return;
-    }
-    for name in ["conformance", "refusals", "fuzz"] {
-        let sanitized = program(Language::C, &format!("{name}.c"), &format!("{name}_sanitized"), &options);
-        let mut command = Command::new(sanitized);
-        if name == "conformance" {
-            command.arg(&*VECTORS);
-        }
-        run(&mut command);
     }
 }

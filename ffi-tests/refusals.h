@@ -115,6 +115,9 @@ static int untouched(int outputs_too) {
             memcpy(t.before + t.regions[i].start, t.memory + t.regions[i].start, t.regions[i].size);
         }
     }
+    /* The padding of structs that the library filled means nothing. */
+    MEMORY_DEFINED(t.before, ARENA);
+    MEMORY_DEFINED(t.memory, ARENA);
     return memcmp(t.before, t.memory, ARENA) == 0;
 }
 

@@ -110,7 +110,10 @@ static void X(refuse_particles)(void) {
     X(refuse_positions)(position, t.a.p[0]);
     REFUSED(FIXPAIR_ERROR_RANGE, t.a.n[1] = 0);
     REFUSED(FIXPAIR_ERROR_OVERFLOW, t.a.n[1] = SIZE_MAX);
+#ifndef FIXPAIR_MEMCHECK
+    /* Valgrind 3.19 takes NaN for finite: it gets VCMPPD's predicate NEQ_OQ wrong. */
     SPOILED(FIXPAIR_ERROR_NOT_FINITE, weights[2] = (REAL)NAN);
+#endif
     SPOILED(FIXPAIR_ERROR_NOT_FINITE, weights[0] = (REAL)INFINITY);
     REFUSED(FIXPAIR_OK, weights[1] = (REAL)NAN);
 

@@ -1,4 +1,5 @@
 use core::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 use std::vec;
 use std::vec::Vec;
 
@@ -28,6 +29,66 @@ fn a_chunk_may_call_its_own_pool() {
     };
     pool.parallel_for(4, &|_| pool.parallel_for(5, &inner).unwrap()).unwrap();
     assert_eq!(calls.into_inner(), 20);
+}
+
+#[test]
+fn callers_at_once_each_get_all_their_chunks() {
+    const LOOPS: usize = 200;
+    let pool = Threads::new(3).unwrap();
+    std::thread::scope(|scope| {
+        for caller in 0..4 {
+            let pool = &pool;
+            scope.spawn(move || {
+                let mut data = vec![0; 97];
+                for turn in 0..LOOPS {
+                    for_each_piece(pool, &mut data, 10, &|i, piece| {
+                        piece
+                            .iter_mut()
+                            .enumerate()
+                            .for_each(|(j, value)| *value += (10 * i + j) * (caller + turn));
+                    })
+                    .unwrap();
+                }
+                let sum: usize = (0..LOOPS).map(|turn| caller + turn).sum();
+                assert!(data.into_iter().enumerate().all(|(i, value)| value == i * sum));
+            });
+        }
+    });
+}
+
+#[test]
+fn after_a_chunk_that_panics_all_threads_work_on() {
+    let pool = Threads::new(3).unwrap();
+    for bad in [0, 7] {
+        let calls = AtomicUsize::new(0);
+        let result = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            pool.parallel_for(8, &|i| {
+                calls.fetch_add(1, Ordering::Relaxed);
+                assert_ne!(i, bad, "the chunk that panics");
+            })
+        }));
+        assert!(result.is_err(), "the caller learns of it");
+        // Each chunk waits for the other, which one thread alone could not do.
+        let (met, begin) = (AtomicUsize::new(0), Instant::now());
+        pool.parallel_for(2, &|_| {
+            met.fetch_add(1, Ordering::Relaxed);
+            while met.load(Ordering::Relaxed) < 2 && begin.elapsed() < Duration::from_secs(20) {
+                std::thread::yield_now();
+            }
+            assert_eq!(met.load(Ordering::Relaxed), 2, "two threads run chunks");
+        })
+        .unwrap();
+    }
+}
+
+#[test]
+fn pools_come_and_go() {
+    for round in 0..100 {
+        let pool = Threads::new(1 + round % 5).unwrap();
+        if round % 2 == 0 {
+            pool.parallel_for(3, &|_| ()).unwrap();
+        }
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 use std::thread::JoinHandle;
 use std::vec::Vec;
 
@@ -49,7 +49,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 impl Threads {
-    /// Starts `threads - 1` threads.
+    /// Starts `threads - 1` threads, and returns when all of them run.
     ///
     /// # Errors
     /// `Range` if `threads` is 0 or above 4096, `Thread` if the system refuses one.
@@ -82,6 +82,8 @@ impl Threads {
             let spawned = std::thread::Builder::new().name(name).spawn(move || inner.serve());
             pool.workers.push(spawned.map_err(|_| Error::Thread)?);
         }
+        // A new thread takes memory for itself. After this loop all of them have: none does so in the middle of a kernel.
+        pool.parallel_for(threads, &|_| ())?;
         Ok(pool)
     }
 
@@ -141,8 +143,11 @@ impl Inner {
 // SAFETY: `next` gives each index to one thread, and the caller waits until every worker has checked out.
 unsafe impl Exec for Threads {
     fn parallel_for(&self, count: usize, body: &(dyn Fn(usize) + Sync)) -> Result<()> {
-        let Ok(_busy) = self.busy.try_lock() else {
-            return Serial.parallel_for(count, body);
+        let _busy = match self.busy.try_lock() {
+            Ok(busy) => busy,
+            // A chunk panicked once; all workers had checked out before the caller learnt of it.
+            Err(TryLockError::Poisoned(busy)) => busy.into_inner(),
+            Err(TryLockError::WouldBlock) => return Serial.parallel_for(count, body),
         };
         if self.workers.is_empty() || count < 2 {
             return Serial.parallel_for(count, body);
