@@ -65,4 +65,8 @@ class PlatformWheel(bdist_wheel):
         return "py3", "none", super().get_tag()[2]
 
 
+for licence in CRATE.parent.glob("LICENSE-*") if CRATE.exists() else ():
+    # Those of the crate travel with what is distributed.
+    shutil.copy(licence, HERE)
+
 setup(version=version(), cmdclass={"build_py": BuildWithLibrary, "bdist_wheel": PlatformWheel})
