@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from setuptools import setup
+from setuptools import Distribution, setup
 from setuptools.command.bdist_wheel import bdist_wheel
 from setuptools.command.build_py import build_py
 
@@ -54,15 +54,22 @@ class BuildWithLibrary(build_py):
         shutil.copy(shared_library(), folder / NAME)
 
 
+class PlatformDistribution(Distribution):
+    """Belongs where compiled packages are, though the compiled part is no module."""
+
+    def has_ext_modules(self):
+        return True
+
+
 class PlatformWheel(bdist_wheel):
     """For any Python 3 of one platform: the library does not know Python."""
-
-    def finalize_options(self):
-        super().finalize_options()
-        self.root_is_pure = False
 
     def get_tag(self):
         return "py3", "none", super().get_tag()[2]
 
 
-setup(version=version(), cmdclass={"build_py": BuildWithLibrary, "bdist_wheel": PlatformWheel})
+for licence in CRATE.parent.glob("LICENSE-*") if CRATE.exists() else ():
+    # Those of the crate travel with what is distributed.
+    shutil.copy(licence, HERE)
+
+setup(version=version(), distclass=PlatformDistribution, cmdclass={"build_py": BuildWithLibrary, "bdist_wheel": PlatformWheel})

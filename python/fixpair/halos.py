@@ -27,7 +27,7 @@ SPHERE = np.dtype(native.Sphere)
 
 
 def linking_length(b: float, box_size: float, particles: int) -> float:
-    """l = b L/N^(1/3)."""
+    """The linking length l = b L/N^(1/3), in the unit of the box; b is 0.2 by custom."""
     length = ctypes.c_double()
     library.linking_length(length, b, box_size, particles)
     return length.value

@@ -1,5 +1,7 @@
 """Arrays are used where they are, or refused: nothing is copied behind the caller's back."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
@@ -44,6 +46,19 @@ def test_meshes_may_have_any_strides_forwards(dtype):
     assert (padded[:, 8] == 7).all() and (padded[:, :, 8:] == 7).all()
     turned = np.zeros((8, 8, 8), dtype).transpose(2, 1, 0)
     assert np.array_equal(fixpair.deposit(turned, x, BOX), whole)
+
+
+def test_calls_take_no_memory_for_arrays(dtype):
+    x, mesh, values = scattered(100_000, dtype), np.zeros((32, 32, 32), dtype), np.zeros(100_000, dtype)
+    with fixpair.Workspace():
+        fixpair.deposit(mesh, x, BOX)
+        tracemalloc.start()
+        fixpair.deposit(mesh, x, BOX)
+        fixpair.read_out(mesh, x, BOX, out=values)
+        _, peak = tracemalloc.get_traced_memory()
+        tracemalloc.stop()
+    # Objects of Python, and not the 1.2 MB of positions.
+    assert peak < 50_000
 
 
 def test_results_go_where_they_are_asked_to(dtype):
