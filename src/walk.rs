@@ -73,6 +73,21 @@ pub fn runs(brick: &Brick, chunk: usize, mut visit: impl FnMut(Run)) {
 ///
 /// # Errors
 /// `Length` if an array cannot hold the brick; else as [`Exec::parallel_for`].
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::walk::walk;
+///
+/// let cells = Brick::whole(4, Space::Configuration)?;
+/// let (mut out, from) = (vec![0.0_f32; cells.reals()], vec![2.0_f32; cells.reals()]);
+/// walk(&Serial, &cells, [&mut out], [&from], &|_, [out], [from]| {
+///     out.iter_mut().zip(from).for_each(|(out, from)| *out = 3.0 * from);
+/// })?;
+/// assert_eq!(out[0], 6.0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn walk<T: Real, const W: usize, const R: usize>(
     exec: &dyn Exec,
     brick: &Brick,
@@ -88,6 +103,21 @@ pub fn walk<T: Real, const W: usize, const R: usize>(
 ///
 /// # Errors
 /// As [`walk`]; `Scratch` if `partial` is too short.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::walk::{chunks, walk_sum};
+///
+/// let cells = Brick::whole(4, Space::Configuration)?;
+/// let (mesh, mut partial) = (vec![2.0_f32; cells.reals()], vec![[0.0]; chunks(&cells)]);
+/// let [sum] = walk_sum::<f32, 0, 1, 1>(&Serial, &cells, [], [&mesh], &mut partial, &|_, [], [row], sum| {
+///     sum[0] += row.iter().map(|&x| f64::from(x)).sum::<f64>();
+/// })?;
+/// assert_eq!(sum, 128.0); // the same on any number of threads
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn walk_sum<T: Real, const W: usize, const R: usize, const S: usize>(
     exec: &dyn Exec,
     brick: &Brick,

@@ -20,6 +20,16 @@ use crate::within::Within;
 /// `Length` if the map is too short.
 ///
 /// Cost: a sort of all labels and two searches a pair. No scratch.
+///
+/// # Example
+/// ```
+/// use fixpair::halos::fof_merge;
+///
+/// let mut map = [[0; 2]; 4]; // two a pair
+/// let entries = fof_merge(&mut map, &[[7, 3], [9, 7]])?; // labels of one group on either side of a border
+/// assert_eq!(map[..entries], [[3, 3], [7, 3], [9, 3]]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn fof_merge(map: &mut [[u64; 2]], pairs: &[[u64; 2]]) -> Result<usize> {
     let all = map.get_mut(..2 * pairs.len()).ok_or(Error::Length)?;
     for (to, label) in all.iter_mut().zip(pairs.as_flattened()) {

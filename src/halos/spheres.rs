@@ -80,6 +80,27 @@ pub fn spheres_scratch<T: Real>(particles: usize) -> Result<Layout> {
 /// below 2; `Overflow`, `Scratch`, `Alignment`; `Hook`, after which spheres are undefined.
 ///
 /// Cost: a sort of the particles, then a few counts of those in each sphere. The same bits for any number of threads.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::halos::fof_labels;
+/// use fixpair::pm::Positions;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let position = Positions::triples(&[9.9_f64, 5.0, 5.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0])?; // two are friends over the edge
+/// let mut labels = [0; 3];
+/// fof_labels(&mut labels, &position, None, 10.0, 0.5, scratch, &Serial)?;
+/// use fixpair::halos::{Density, Sphere, spheres};
+///
+/// let mut found = [Sphere { members: 0, mass: 0.0, radius: 0.0 }];
+/// let density = Density { box_size: 10.0, particles_total: 3, particle_mass: 1e10, n_min: 2 };
+/// spheres(&mut found, &[[0.0, 5.0, 5.0]], &[200.0], &position, &density, scratch, &Serial)?;
+/// assert!(found[0].members == 2 && found[0].mass == 2e10); // R: two particles fill it to 200 means
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn spheres<T: Real>(
     spheres: &mut [Sphere],
     centres: &[[f64; 3]],

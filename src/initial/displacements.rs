@@ -59,6 +59,20 @@ pub struct Motion {
 
 impl Motion {
     /// Velocities over the two fields.
+    ///
+    /// ```
+    /// use fixpair::initial::displacements::Motion;
+    ///
+    /// let motion = Motion {
+    ///     box_size: 1000.0,
+    ///     velocity: 100.0, // a H
+    ///     rates: [1.0, 2.0],
+    ///     second_order: -3.0 / 7.0,
+    ///     third_order: [0.0; 3],
+    ///     third_rates: [3.0; 3],
+    /// };
+    /// assert_eq!((motion.step().first_velocity, motion.step().second_velocity), (100.0, 200.0));
+    /// ```
     #[must_use]
     pub fn step(&self) -> Step {
         let [first_velocity, second_velocity] = self.rates.map(|rate| self.velocity * rate);

@@ -126,6 +126,24 @@ pub fn displacement<T: Real>(
 /// `Brick` for bricks that do not match, `Length`, or what `work` returns.
 ///
 /// Cost: six inverse and one forward transform of `work`, and 13 passes.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// let modes = Brick::whole(8, Space::Fourier)?;
+/// let mut delta = vec![0.0; fft.length()];
+/// delta[2] = 0.01; // the mode (0, 0, 1) of a density contrast
+/// use fixpair::initial::lpt::second_order_source;
+///
+/// let (mut source, mut a, mut b, mut c) = (delta.clone(), delta.clone(), delta.clone(), delta.clone());
+/// second_order_source(&mut source, &delta, &modes, &mut fft, [&mut a, &mut b, &mut c], &Serial)?;
+/// assert!(source.iter().all(|s| s.abs() < 1e-12)); // none of a plane wave: Zel'dovich is exact
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn second_order_source<T: Real>(
     out: &mut [T],
     density: &[T],

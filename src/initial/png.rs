@@ -100,6 +100,26 @@ pub fn add_local_scratch<T: Real>(work: &dyn Fft3<T>) -> Result<Layout> {
 /// `NotFinite` for the coefficients, `Brick` for bricks that do not match, `Length`, `Scratch`, or what `work` returns.
 ///
 /// Cost: one inverse and one forward transform of `work`, and 3 passes (4 with g_NL).
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::fft::Fft3;
+/// use fixpair::initial::png::{Local, add_local};
+/// use fixpair::walk::chunks;
+///
+/// let (modes, mut phi, mut mesh) = (Brick::whole(8, Space::Fourier)?, vec![0.0; 640], vec![0.0; fft.length()]);
+/// phi[2] = 0.5; // Phi_G = cos kz
+/// let mut partial = vec![[0.0]; chunks(fft.configuration())];
+/// let local = Local { f_nl: 0.1, g_nl: 0.0 };
+/// add_local(&mut phi, &modes, local, &mut fft, &mut mesh, &mut partial, &Serial)?;
+/// assert!((phi[4] - 0.1 * 0.25).abs() < 1e-15 && phi[0] == 0.0); // cos^2 = 1/2 + cos(2 kz)/2, less its mean
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn add_local<T: Real>(
     phi: &mut [T],
     brick: &Brick,

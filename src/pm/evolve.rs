@@ -136,6 +136,39 @@ pub fn evolve_scratch<T: Real>(fft: &dyn Fft3<T>, particles: usize, window: Wind
 ///
 /// The same bits for any number of threads. Memory: particles, three meshes, scratch. Cost of a step: four transforms, a deposit, a kick, a drift,
 /// 1.6 ms of scalar factors, half of it before the first step.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::cosmology::Cosmology;
+/// use fixpair::fft::Fft3;
+/// use fixpair::initial::particles::Components;
+/// use fixpair::pm::evolve::{Epoch, Gravity, Workshop, evolve};
+/// use fixpair::pm::{ForceLaw, Window, factors::Stepper, outputs::Verdict};
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let gravity = Gravity {
+///     cosmology: Cosmology::goliat(),
+///     box_size: 8.0,
+///     hubble: 100.0,
+///     window: Window::CloudInCell,
+///     law: ForceLaw::default(),
+///     stepper: Stepper::FastPm,
+/// };
+/// let (mut x, mut v) = ([1.0, 4.0, 4.0, 3.0, 4.0, 4.0], [0.0; 6]); // two particles
+/// let [mut a, mut b, mut c] = [0; 3].map(|_| vec![0.0; fft.length()]);
+/// let mut epoch = Epoch::at(0.5);
+/// let mut workshop = Workshop { meshes: [&mut a, &mut b, &mut c], fft: &mut fft, scratch, exec: &Serial };
+/// let (mut position, mut velocity) = (Components::triples(&mut x)?, Components::triples(&mut v)?);
+/// evolve(&gravity, &mut epoch, &mut position, &mut velocity, None, &[0.5, 0.6], None, &mut workshop, &mut |_| Verdict::Continue)?;
+/// assert!(x[0] != 1.0 && (x[0] + x[3] - 4.0).abs() < 1e-12 && epoch.position == 0.6); // momentum is conserved
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn evolve<T: Real>(
     gravity: &Gravity,
     epoch: &mut Epoch,

@@ -77,6 +77,30 @@ pub fn kick_scratch<T: Real>(region: &Region, particles: usize, window: Window) 
 ///
 /// The same bits for any number of threads. Cost on one core, `f32`, order 2: 18 ns a particle if neighbours in memory are neighbours in space,
 /// 31 ns for a lattice displaced as far as clustering does, 50 ns in random order; order 3: 34, 51 and 80 ns.
+///
+/// # Example
+/// ```
+/// use fixpair::mesh::{Brick, Space};
+/// use fixpair::pm::Region;
+///
+/// let brick = Brick::whole(8, Space::Configuration)?;
+/// let region = Region::from_brick(&brick)?;
+/// use fixpair::exec::Serial;
+/// use fixpair::initial::particles::Components;
+/// use fixpair::pm::{Assignment, Kick, Positions, Window, kick};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let (force, zero) = (vec![2.0; region.reals()], vec![0.0; region.reals()]);
+/// let (x, mut v) = ([1.5, 1.0, 1.0], [1.0, 0.0, 0.0]);
+/// let assignment = Assignment { box_size: 8.0, window: Window::CloudInCell, shift: 0.0 };
+/// let step = Kick { keep: 1.0, force: 3.0, first: 0.0, second: 0.0 };
+/// let (mut velocity, position) = (Components::triples(&mut v)?, Positions::triples(&x)?);
+/// kick(&mut velocity, &position, [&force, &zero, &zero], &region, &assignment, &step, None, scratch, &Serial)?;
+/// assert_eq!(v, [7.0, 0.0, 0.0]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn kick<T: Real>(
     velocity: &mut Components<'_, T>,
     position: &Positions<'_, T>,

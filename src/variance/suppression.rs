@@ -220,6 +220,23 @@ impl Scatter<'_> {
 /// # Errors
 /// `Length` for arrays of different lengths, `Samples` for fewer bins than parameters, `NotFinite`, `Range` for k, modes, sigma or errors that are not
 /// positive, `Singular` where the data have no step.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::models::{Suppression, sigma_suppressed};
+/// use fixpair::variance::suppression::{Scatter, fit_suppression_weighted};
+///
+/// let left = Suppression { cosmic_variance: 0.3, softening: 0.1, shot_noise: 0.8 };
+/// let k: Vec<f64> = (1..64).map(|b| 0.00628 * f64::from(b)).collect();
+/// let (power, modes) = (k.iter().map(|k| 500.0 / k).collect::<Vec<_>>(), k.iter().map(|k| 1e6 * k * k).collect::<Vec<_>>());
+/// let mut sigma = vec![0.0; k.len()];
+/// sigma_suppressed(&mut sigma, &left, &k, &power, &modes, 4000.0)?;
+/// let error: Vec<f64> = sigma.iter().map(|sigma| 0.1 * sigma).collect();
+/// let scatter = Scatter { sigma: &sigma, k: &k, power: &power, modes: &modes, noise: 4000.0 };
+/// let fit = fit_suppression_weighted(&scatter, &error)?;
+/// assert!((fit.value.softening - 0.1).abs() < 1e-3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn fit_suppression_weighted(scatter: &Scatter<'_>, error: &[f64]) -> Result<SuppressionFit> {
     scatter.check()?;
     same_length(scatter.sigma.len(), &[error.len()])?;

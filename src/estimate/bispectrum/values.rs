@@ -48,6 +48,16 @@ pub fn bispectrum_values(values: &mut [f64], sums: &[ExactSum]) -> Result<()> {
 /// # Errors
 /// `Length` unless there is a count for each value, `MeshSize` for n = 0, `NotFinite` for box, scale or values, `Range` for a box
 /// that is not positive, and if a result overflows. `values` is untouched by all of them.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::normalise;
+///
+/// let mut values = [54066.0 * 64.0_f64.powi(3)]; // sum over cells of a product of three shells whose modes are all 1
+/// normalise(&mut values, &[54066], 64, 1000.0, 1.0)?;
+/// assert!((values[0] / 1e18 - 1.0).abs() < 1e-12); // V^2 <delta delta delta>
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn normalise(values: &mut [f64], counts: &[u64], n: usize, box_size: f64, scale: f64) -> Result<()> {
     if values.len() != counts.len() {
         return Err(Error::Length);
