@@ -3431,7 +3431,7 @@ fixpair_status_t fixpair_binning_lengths(size_t *bins,
  * Turns sums into bins: what each holds, and the sums of p(n) L_l(mu) in it, rounded once.
  *
  * Sums are integers. They begin as zeros; fixpair_power_sums_* and fixpair_correlation_sums_* add to them; and those of several bricks or ranks of one
- * mesh, added one by one (MPI_INT64_T, MPI_SUM) in any order, are those of the whole mesh bit for bit.
+ * mesh, added one by one (MPI_INT64_T, MPI_SUM) in any order, read as those of the whole mesh bit for bit.
  *
  * Out: bins     bins_len bins
  *      values   values_len numbers: for each spectrum, each bin, each multipole in increasing order
