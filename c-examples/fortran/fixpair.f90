@@ -289,8 +289,8 @@ contains
     type(fixpair_binning) :: binning
     integer(c_int64_t), target :: edges(2)
     edges = [1, 4]
-    fixpair_matches = fixpair_conditions_init(conditions, 0_c_int64_t) == fixpair_ok &
-        .and. fixpair_binning_init(binning, c_loc(edges), 2_c_size_t) == fixpair_ok
+    call fixpair_try(fixpair_binning_init(binning, c_loc(edges), 2_c_size_t))
+    fixpair_matches = fixpair_conditions_init(conditions, 0_c_int64_t) == fixpair_ok
     fixpair_matches = fixpair_matches .and. conditions%struct_size == c_sizeof(conditions) &
         .and. conditions%realisation%struct_size == c_sizeof(conditions%realisation) &
         .and. conditions%cosmology%struct_size == c_sizeof(conditions%cosmology) &
