@@ -135,6 +135,12 @@ static int check_plants(struct bench *bench, int *failures) {
     *failures += found(bench, &e, QUESTION_AMPLITUDE, MISTAKE_FIXED);
     bench->claimed.realisation.amplitude = FIXPAIR_AMPLITUDE_FIXED;
 
+    /* f_NL in one member of the pair alone. */
+    for (size_t m = 0; m < bench->fft.hook.length; m++) bench->modes[INVERTED][m] = -bench->modes[GAUSSIAN][m];
+    TRY(judge(bench, &e));
+    *failures += found(bench, &e, QUESTION_PAIR, MISTAKE_PAIR_OTHER);
+
+    /* The ratio is linear in the velocities: check_lattice measures that of right ones, and a factor on them is one on it. */
     const struct {
         double factor;
         enum mistake mistake;
@@ -184,6 +190,13 @@ static int check_lattice(struct bench *bench, int *failures) {
             }
         }
     }
+    struct fixpair_growth growth;
+    double a = 1.0 / (1.0 + c.redshift), expansion;
+    TRY(fixpair_growth_factors(&growth, &a, 1, &c.cosmology));
+    TRY(fixpair_expansion(&expansion, &a, 1, &c.cosmology));
+    double ratio = slope / (a * 100.0 * expansion * growth.f);
+    /* The circular mean that finds the lattice is off at third order in displacements over cells, which leaves 3e-10 here. */
+    *failures += claim(fabs(ratio - 1.0) < 1e-8, "their velocities are a H f psi, to %.0e", fabs(ratio - 1.0));
     /* Positions are rounded to 1e-13 Mpc/h of displacements of some 0.1. */
     *failures += claim(len > 0 && worst < 1e-9 * largest, "particles of any order give their modes back, to %.0e", worst / largest);
     free(x);

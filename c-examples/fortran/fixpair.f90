@@ -286,11 +286,16 @@ contains
   ! Has the library that is linked the structs of this module?
   logical function fixpair_matches()
     type(fixpair_conditions) :: conditions
+    type(fixpair_binning) :: binning
+    integer(c_int64_t), target :: edges(2)
+    edges = [1, 4]
+    call fixpair_try(fixpair_binning_init(binning, c_loc(edges), 2_c_size_t))
     fixpair_matches = fixpair_conditions_init(conditions, 0_c_int64_t) == fixpair_ok
     fixpair_matches = fixpair_matches .and. conditions%struct_size == c_sizeof(conditions) &
         .and. conditions%realisation%struct_size == c_sizeof(conditions%realisation) &
         .and. conditions%cosmology%struct_size == c_sizeof(conditions%cosmology) &
-        .and. conditions%linear%struct_size == c_sizeof(conditions%linear)
+        .and. conditions%linear%struct_size == c_sizeof(conditions%linear) &
+        .and. binning%struct_size == c_sizeof(binning)
   end function
 
   ! Stops with the library's sentence about a status that is not 0.

@@ -46,6 +46,22 @@ pub fn correlation_modes_scratch(brick: &Brick) -> Result<Layout> {
 /// Modes are not checked: a NaN shows in [`read_sums`](super::binning::read_sums).
 ///
 /// Cost: one pass over the modes.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::{compensation::Compensation, correlation::correlation_modes};
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let modes = Brick::whole(8, Space::Fourier)?;
+/// let mut field = vec![3.0_f64; modes.reals()];
+/// correlation_modes(&mut field, None, [Compensation::None; 2], 1.0, &modes, scratch, &Serial)?; // |f_k|^2, and no k = 0
+/// assert!(field[0] == 0.0 && (field[2] - 18.0).abs() < 1e-12 && field[3] == 0.0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn correlation_modes<T: Real>(
     modes: &mut [T],
     other: Option<&[T]>,
@@ -118,6 +134,26 @@ pub fn correlation_sums_scratch(brick: &Brick, binning: &Binning<'_>, meshes: us
 /// added. A NaN shows in `read_sums`.
 ///
 /// Cost: one pass over each mesh.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::binning::{Bin, Binning, read_sums};
+/// use fixpair::estimate::correlation::correlation_sums;
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 18]);
+/// # let mut memory = Memory([0; 1 << 18]);
+/// # let scratch = &mut memory.0;
+///
+/// let cells = Brick::whole(8, Space::Configuration)?;
+/// let xi = vec![0.5_f64; cells.reals()]; // the inverse transform of correlation_modes
+/// let binning = Binning::shells(&[1, 4]); // separations of 1 to 2 cells
+/// let (mut sums, mut bins, mut values) = (vec![0; binning.words(1)?], [Bin::default()], [0.0]);
+/// correlation_sums(&mut sums, &[&xi], &cells, &binning, scratch, &Serial)?;
+/// read_sums(&mut bins, &mut values, &sums, &binning, 1)?;
+/// assert_eq!((bins[0].count, values[0]), (26, 13.0));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn correlation_sums<T: Real>(
     sums: &mut [i64],
     meshes: &[&[T]],

@@ -195,6 +195,27 @@ pub fn halos<T: Real>(
 ///
 /// # Errors
 /// `Length`; `NotFinite`; `Range` for `n_min` = 0, the mass, the box, or a reference outside it. Nothing is then written.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::halos::fof_labels;
+/// use fixpair::pm::Positions;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let position = Positions::triples(&[9.9_f64, 5.0, 5.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0])?; // two are friends over the edge
+/// let mut labels = [0; 3];
+/// fof_labels(&mut labels, &position, None, 10.0, 0.5, scratch, &Serial)?;
+/// use fixpair::halos::{Halo, HaloSums, halo_sums, halos_finish};
+///
+/// let (mut sums, mut found) = ([HaloSums::default()], [Halo::default()]);
+/// halo_sums(&mut sums, &labels, &position, None, 10.0, 2, &[], scratch, &Serial)?;
+/// assert_eq!(halos_finish(&mut found, &sums, 10.0, 2, 1e10)?, 1);
+/// assert!(found[0].centre[0] < 1e-12 || found[0].centre[0] > 10.0 - 1e-12); // over the edge
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn halos_finish(
     halos: &mut [Halo],
     sums: &[HaloSums],

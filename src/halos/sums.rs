@@ -165,6 +165,26 @@ pub(super) fn check<T: Real>(
 /// `Alignment`; `Hook`, after which sums are undefined, as they are after `NotFinite` for velocities whose squares no number holds.
 ///
 /// The same bits for any number of threads.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::halos::fof_labels;
+/// use fixpair::pm::Positions;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let position = Positions::triples(&[9.9_f64, 5.0, 5.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0])?; // two are friends over the edge
+/// let mut labels = [0; 3];
+/// fof_labels(&mut labels, &position, None, 10.0, 0.5, scratch, &Serial)?;
+/// use fixpair::halos::{HaloSums, halo_sums};
+///
+/// let mut sums = [HaloSums::default(); 2];
+/// let groups = halo_sums(&mut sums, &labels, &position, None, 10.0, 2, &[], scratch, &Serial)?;
+/// assert!(groups == 1 && sums[0].members == 2); // of this process
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn halo_sums<T: Real>(
     sums: &mut [HaloSums],
     labels: &[u64],
@@ -207,6 +227,28 @@ pub fn halo_sums<T: Real>(
 /// is then changed.
 ///
 /// The same bits whatever the order of the sums; other than those of [`halos`](super::halos) of the whole by rounding.
+///
+/// # Example
+/// ```
+/// use fixpair::exec::Serial;
+/// use fixpair::halos::fof_labels;
+/// use fixpair::pm::Positions;
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let position = Positions::triples(&[9.9_f64, 5.0, 5.0, 0.1, 5.0, 5.0, 5.0, 5.0, 5.0])?; // two are friends over the edge
+/// let mut labels = [0; 3];
+/// fof_labels(&mut labels, &position, None, 10.0, 0.5, scratch, &Serial)?;
+/// use fixpair::halos::{HaloSums, halo_sums, halo_sums_merge};
+///
+/// let mut sums = [HaloSums::default(); 2];
+/// halo_sums(&mut sums[..1], &labels, &position, None, 10.0, 2, &[], scratch, &Serial)?;
+/// sums[1] = sums[0]; // another process's part of the group
+/// assert_eq!(halo_sums_merge(&mut sums, 10.0)?, 1);
+/// assert_eq!(sums[0].members, 4);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn halo_sums_merge(sums: &mut [HaloSums], box_size: f64) -> Result<usize> {
     check_sums(sums, box_size)?;
     sums.iter().try_fold(0_u64, |total, one| total.checked_add(one.members)).ok_or(Error::Overflow)?;

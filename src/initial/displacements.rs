@@ -129,6 +129,18 @@ pub struct Work<'a, T> {
 const SOURCES: usize = 5;
 
 /// Reals of `rest` in [`Work`]: at first order none, or two meshes for a species; at second two, or one of `fine` if that is more; at third 17.
+///
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::displacements::{Order, rest_length};
+///
+/// assert!(rest_length::<f64>(Order::Second, false, &fft, None) >= rest_length::<f64>(Order::First, false, &fft, None));
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 #[must_use]
 pub fn rest_length<T: Real>(
     order: Order,

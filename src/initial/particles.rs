@@ -75,6 +75,17 @@ impl<'a, T: Real> Components<'a, T> {
     /// # Safety
     /// For the life of the value, each `start[a] + i stride` with i < `particles` is an aligned element that only this value touches, and no
     /// two of them are the same.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::initial::particles::Components;
+    ///
+    /// let mut particles = [[0.0_f32; 4]; 2]; // a host's struct: x, y, z, mass
+    /// let first = particles.as_mut_ptr().cast::<f32>();
+    /// // SAFETY: there are so many particles, four floats apart, and nothing else touches them.
+    /// let position = unsafe { Components::strided([first, first.wrapping_add(1), first.wrapping_add(2)], 4, 2) };
+    /// assert_eq!(position.len(), 2);
+    /// ```
     #[must_use]
     pub unsafe fn strided(start: [*mut T; 3], stride: usize, particles: usize) -> Self {
         Self { start, stride, particles, life: PhantomData }

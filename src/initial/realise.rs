@@ -41,6 +41,18 @@ pub struct FieldWork<'a, T> {
 }
 
 /// Reals of `rest` in [`FieldWork`] where f_NL is not local: a mesh of `work`, on which products are taken, and one of `fft`.
+///
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::realise::shape_rest;
+///
+/// assert!(shape_rest::<f64>(&fft, &fft) > 0); // reals beside the first mesh of the products
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 #[must_use]
 pub fn shape_rest<T: Real>(fft: &dyn Fft3<T>, work: &dyn Fft3<T>) -> usize {
     apart(work) + fft.length()

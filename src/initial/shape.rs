@@ -127,6 +127,25 @@ pub fn add_quadratic_scratch<T: Real>(brick: &Brick, work: &dyn Fft3<T>) -> Resu
 /// yet. A square whose s_out is that of the row before shares its forward transform. Local 1 + 1, equilateral, orthogonal and folded
 /// 4 + 3, orthogonal LSS 8 + 6. And as many passes over modes as transforms, one over cells for each row, and 50 ns for each
 /// entry of `table` and each transform with s other than 0.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::fft::Fft3;
+/// use fixpair::initial::shape::{Quadratic, Shape, add_quadratic};
+///
+/// let (modes, mut phi) = (Brick::whole(8, Space::Fourier)?, vec![0.0; 640]);
+/// phi[2] = 0.5; // Phi_G = cos kz
+/// let (mut a, mut b, mut sum, mut table) = (vec![0.0; fft.length()], vec![0.0; fft.length()], vec![0.0; 640], [0.0; 49]);
+/// let quadratic = Quadratic { f_nl: 0.1, rows: Shape::Local.rows(), n_s: 0.96 };
+/// add_quadratic(&mut phi, &modes, &quadratic, &mut fft, [&mut a, &mut b], &mut sum, &mut table, &Serial)?;
+/// assert!((phi[4] - 0.1 * 0.25).abs() < 1e-15); // as add_local
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn add_quadratic<T: Real>(
     phi: &mut [T],
     brick: &Brick,

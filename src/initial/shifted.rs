@@ -47,6 +47,14 @@ impl<'a> HalfCells<'a> {
     ///
     /// # Errors
     /// `Length` if it has less than [`half_cells_length`] entries.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::initial::shifted::{HalfCells, half_cells_length};
+    ///
+    /// let mut table = vec![[0.0; 2]; half_cells_length(8)];
+    /// assert!(HalfCells::new(&mut table, 8).is_ok());
+    /// ```
     pub fn new(table: &'a mut [[f64; 2]], n: usize) -> Result<Self> {
         let table = table.get_mut(..half_cells_length(n)).ok_or(Error::Length)?;
         for (m, phase) in table.iter_mut().enumerate() {

@@ -42,6 +42,26 @@ pub const THIRD_ORDER_MESHES: usize = 12;
 /// `Length` for short arrays, or what `fft` and `exec` return.
 ///
 /// Cost: 56 transforms, 24 passes.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// let modes = Brick::whole(8, Space::Fourier)?;
+/// let mut delta = vec![0.0; fft.length()];
+/// delta[2] = 0.01; // the mode (0, 0, 1) of a density contrast
+/// use fixpair::initial::{shifted::half_cells_length, third::second_order_exact};
+///
+/// let mut out = vec![0.0; fft.length()];
+/// let mut meshes = core::array::from_fn(|_| vec![0.0; fft.length()]);
+/// let mut table = vec![[0.0; 2]; half_cells_length(8)];
+/// second_order_exact(&mut out, &delta, &mut fft, meshes.each_mut().map(|mesh| &mut mesh[..]), &mut table, &Serial)?;
+/// assert!(out.iter().all(|s| s.abs() < 1e-12)); // none of a plane wave
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn second_order_exact<T: Real>(
     out: &mut [T],
     density: &[T],

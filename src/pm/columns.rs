@@ -70,6 +70,17 @@ impl<'a, T: Real> Positions<'a, T> {
     ///
     /// # Safety
     /// For the life of the value, each `start[a] + i stride` with i < `particles` is an aligned element that nobody writes.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::pm::Positions;
+    ///
+    /// let particles = [[1.0_f32, 2.0, 3.0, 0.5], [4.0, 5.0, 6.0, 0.5]]; // a host's struct: x, y, z, mass
+    /// let first = particles.as_ptr().cast::<f32>();
+    /// // SAFETY: there are so many particles, four floats apart, and they outlive the view.
+    /// let position = unsafe { Positions::strided([first, first.wrapping_add(1), first.wrapping_add(2)], 4, 2) };
+    /// assert_eq!(position.len(), 2);
+    /// ```
     #[must_use]
     pub unsafe fn strided(start: [*const T; 3], stride: usize, particles: usize) -> Self {
         Self { start, stride, particles, life: PhantomData }
@@ -302,6 +313,16 @@ impl<'a, T: Real> Column<'a, T> {
     ///
     /// # Safety
     /// For the life of the value, each `start + i stride` with i < `length` is an aligned element that nobody writes.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::pm::Column;
+    ///
+    /// let particles = [[1.0_f32, 2.0, 3.0, 0.5], [4.0, 5.0, 6.0, 0.5]]; // a host's struct: x, y, z, mass
+    /// // SAFETY: there are so many particles, four floats apart, and they outlive the view.
+    /// let mass = unsafe { Column::strided(particles.as_ptr().cast::<f32>().wrapping_add(3), 4, 2) };
+    /// assert_eq!(mass.len(), 2);
+    /// ```
     #[must_use]
     pub unsafe fn strided(start: *const T, stride: usize, length: usize) -> Self {
         Self { start, stride, length, life: PhantomData }
@@ -375,6 +396,16 @@ impl<'a, T: Real> ColumnMut<'a, T> {
     /// # Safety
     /// For the life of the value, each `start + i stride` with i < `length` is an aligned element that only this value touches, and no two
     /// of them are the same.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::pm::ColumnMut;
+    ///
+    /// let mut particles = [[0.0_f32; 4]; 2]; // a host's struct: x, y, z, density
+    /// // SAFETY: there are so many particles, four floats apart, and nothing else touches them.
+    /// let density = unsafe { ColumnMut::strided(particles.as_mut_ptr().cast::<f32>().wrapping_add(3), 4, 2) };
+    /// assert_eq!(density.len(), 2);
+    /// ```
     #[must_use]
     pub unsafe fn strided(start: *mut T, stride: usize, length: usize) -> Self {
         Self { start, stride, length, life: PhantomData }

@@ -69,6 +69,26 @@ fn bytes(values: usize, controls: usize) -> usize {
 /// # Errors
 /// `Length` for arrays of other sizes or none, `Samples` unless N >= controls + 3, `NotFinite`, `Range` for samples beyond 1e140, a `covariance_of_mu` that is not one, or a result that overflows,
 /// `Singular` where controls are combinations of others, `Scratch`. Outputs are untouched by all of them.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::carpool::{Carpool, carpool};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let mut memory = Memory([0; 1 << 16]);
+/// # let scratch = &mut memory.0;
+///
+/// let of = Carpool {
+///     y: &[104.0, 97.0, 99.0, 101.0, 102.0, 98.0], // f100 of six seeds
+///     c: &[4.0, -3.0, -1.0, 1.0, 2.0, -2.0],       // f0
+///     samples: 6,
+///     mu: &[0.0],
+///     covariance_of_mu: None,
+/// };
+/// let (mut mean, mut covariance, mut beta) = ([0.0], [0.0], [0.0]);
+/// carpool(&mut mean, &mut covariance, &mut beta, &of, scratch)?;
+/// assert!((beta[0] - 1.0).abs() < 0.1 && (mean[0] - 100.0).abs() < 0.2);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn carpool(
     mean: &mut [f64],
     covariance: &mut [f64],

@@ -13,6 +13,17 @@ use crate::within::Within;
 /// # Errors
 /// `Length` for a grid of another size, or segments fewer than there are and not none, `NotFinite`, `Range` for fewer than two points, an empty range, or
 /// differences that overflow.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::contours::contours;
+///
+/// let (grid, range) = ([0.0, 0.0, 2.0, 2.0], [[0.0, 1.0], [0.0, 1.0]]); // 2 x 2 points
+/// let mut segments = [[0.0; 4]];
+/// assert_eq!(contours(&mut segments, &grid, [2, 2], range, 1.0)?, 1);
+/// assert!((segments[0][0] - 0.5).abs() < 1e-12 && (segments[0][2] - 0.5).abs() < 1e-12); // x = 1/2
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn contours(
     segments: &mut [[f64; 4]],
     values: &[f64],

@@ -111,6 +111,22 @@ impl BiasLikelihood {
     /// # Errors
     /// As [`BiasLikelihood::add`]; `Range` for `halo_halo` beyond the bins and for a precision that is not positive, `Singular` for a root with a zero on its diagonal,
     /// `Scratch`.
+    ///
+    /// # Example
+    /// ```
+    /// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+    /// # let mut memory = Memory([0; 1 << 16]);
+    /// # let scratch = &mut memory.0;
+    /// use fixpair::variance::bias::Bias;
+    /// use fixpair::variance::likelihood::{BiasLikelihood, Spectra};
+    ///
+    /// let spectra = Spectra { power: &[8e4, 4e4, 2e4], linear: &[2e4, 1e4, 5e3], alpha: &[100.0, 1000.0, 4000.0] };
+    /// let root = [900.0, 0.0, 0.0, 50.0, 200.0, 0.0, 0.0, 10.0, 50.0]; // L of the covariance L L^T
+    /// let mut likelihood = BiasLikelihood::EMPTY;
+    /// likelihood.add_correlated(3, spectra, &root, 1.0, scratch)?; // all P_hh; 1, or Hartlap's factor
+    /// assert!(likelihood.chi_squared(&Bias { b_g: 2.0, p: 1.0, f_nl: 0.0, delta_c: 1.686 })? < 1e-12);
+    /// # Ok::<(), fixpair::status::Error>(())
+    /// ```
     pub fn add_correlated(
         &mut self,
         halo_halo: usize,

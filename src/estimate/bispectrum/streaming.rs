@@ -84,6 +84,29 @@ pub fn bispectrum_scratch<T: Real>(fft: &dyn Fft3<T>, shells: usize, triangles: 
 /// untouched by all of them.
 ///
 /// Cost: for each transform also one pass over `modes` and a mesh; products as [`super::bispectrum_sums`].
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::estimate::bispectrum::{bispectrum, bispectrum_meshes, bispectrum_values};
+/// use fixpair::estimate::exact::ExactSum;
+/// # #[repr(align(64))] struct Large([u8; 1 << 18]);
+/// # let mut memory = Large([0; 1 << 18]);
+/// # let scratch = &mut memory.0;
+///
+/// let modes = vec![1.0; 640]; // one cell of mass n^3: every mode is 1
+/// let (mut sums, mut value) = ([ExactSum::ZERO], [0.0]);
+/// let mut fields = vec![0.0; bispectrum_meshes::<f64>(&fft, 3)?];
+/// bispectrum(&mut sums, &[[0, 0, 0]], &[1, 4], &modes, &mut fft, &mut fields, scratch, &Serial)?;
+/// bispectrum_values(&mut value, &sums)?;
+/// let triples = value[0] / 512.0; // each of the ordered triples that close adds n^3
+/// assert!(triples > 100.0 && (triples - triples.round()).abs() < 1e-9);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bispectrum<T: Real>(
     sums: &mut [ExactSum],
     triangles: &[Triangle],

@@ -253,6 +253,24 @@ pub fn bispectrum_sums_scratch<T: Real>(brick: &Brick, shells: usize, triangles:
 /// untouched by all of them. In f32 products below 1e-38 vanish: scale fields that are smaller than 1e-12.
 ///
 /// Cost: each field is read once. For all triangles of 40 shells 2 flops for each triangle and cell, in vectors of the cells' type.
+///
+/// # Example
+/// ```
+/// use fixpair::estimate::bispectrum::{bispectrum_sums, bispectrum_values};
+/// use fixpair::estimate::exact::ExactSum;
+/// use fixpair::exec::Serial;
+/// use fixpair::mesh::{Brick, Space};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 18]);
+/// # let mut memory = Memory([0; 1 << 18]);
+/// # let scratch = &mut memory.0;
+///
+/// let cells = Brick::whole(8, Space::Configuration)?;
+/// let (shell, mut sums, mut value) = (vec![2.0_f64; cells.reals()], [ExactSum::ZERO], [0.0]);
+/// bispectrum_sums(&mut sums, &[[0, 0, 0]], &[&shell], &cells, scratch, &Serial)?; // of shells transformed by the host
+/// bispectrum_values(&mut value, &sums)?;
+/// assert_eq!(value, [8.0 * 512.0]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bispectrum_sums<T: Real>(
     sums: &mut [ExactSum],
     triangles: &[Triangle],
