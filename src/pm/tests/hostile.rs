@@ -66,7 +66,7 @@ fn a_quarter_of_a_million_particles_in_one_cell_are_summed_as_they_round() {
         let mesh = put(&region, &triples, None, &assignment, &Threads::new(2).unwrap()).unwrap();
         let mass: f64 = mesh.iter().map(|&m| f64::from(m)).sum();
         match window {
-            // Sums of ones, and of 27ths and 512ths that are multiples of a power of two.
+            // Sums of ones.
             Window::NearestGridPoint | Window::CloudInCell => {
                 assert_eq!(occupied(&mesh), [((3 * n + 7) * n + 5, particles as f64)]);
             }
