@@ -43,10 +43,10 @@ static void line_of_bytes(int promise, const char *name, const char *suffix, con
     line(promise, name, suffix, hash_bytes(HASH_START, data, size));
 }
 
-/* Cases of conformance headers become lines. */
+/* Cases of conformance_variance.h become lines. */
 static void line_of_case(const char *name, uint64_t hash) {
     int algebra = strcmp(name, "covariance_root") == 0 || strcmp(name, "carpool") == 0;
-    line(algebra ? ALGEBRA : EXACT, name, "", hash);
+    line(algebra ? ALGEBRA : EXACT, "statistics.", name, hash);
 }
 
 /* The head of the numbers of a line in the file of values. */

@@ -120,7 +120,8 @@ fn each_shared<T: Real>(
         let (x, plane) = if plane < x[0].length { (x[0], plane) } else { (x[1], plane - x[0].length) };
         for y in y {
             for row in 0..y.length {
-                for z in z {
+                // Where nothing is shared, its place need not be in either array.
+                for z in z.into_iter().filter(|z| z.length > 0) {
                     let start = (x.target + plane) * to[0] + (y.target + row) * to[1] + z.target * to[2];
                     let read = (x.source + plane) * from[0] + (y.source + row) * from[1] + z.source * from[2];
                     if to[2] == 1 && from[2] == 1 {

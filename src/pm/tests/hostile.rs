@@ -56,23 +56,26 @@ fn a_box_of_another_size_by_all_powers_of_ten_gives_the_same_mesh() {
 }
 
 #[test]
-fn a_million_particles_in_one_cell_are_summed_exactly() {
+fn a_quarter_of_a_million_particles_in_one_cell_are_summed_as_they_round() {
     let n = 8;
     let region = region_of(n);
-    let particles = 1 << 20;
+    let particles = 1 << 18;
     let triples: Vec<f32> = [3.0, 7.0, 5.0].repeat(particles);
     for window in Window::ALL {
         let assignment = cells(n, window, 0.0);
         let mesh = put(&region, &triples, None, &assignment, &Threads::new(2).unwrap()).unwrap();
         let mass: f64 = mesh.iter().map(|&m| f64::from(m)).sum();
         match window {
-            // Sums of ones, and of 27ths and 512ths that are multiples of a power of two.
+            // Sums of ones.
             Window::NearestGridPoint | Window::CloudInCell => {
                 assert_eq!(occupied(&mesh), [((3 * n + 7) * n + 5, particles as f64)]);
             }
-            // Each of 10^6 additions to a cell rounds by half an ulp of what is there already, mostly to one side where all terms are equal.
+            // Each of 3 10^5 additions to a cell rounds by half an ulp of what is there already, mostly to one side where all terms are equal.
             _ => {
-                assert!((mass / particles as f64 - 1.0).abs() < 0.5 * 1.2e-7 * particles as f64, "{window:?}")
+                assert!(
+                    (mass / particles as f64 - 1.0).abs() < 0.5 * 1.2e-7 * particles as f64,
+                    "{window:?}"
+                );
             }
         }
         let values = get(&region, &mesh, &triples[..300], &assignment, &Serial).unwrap();
