@@ -34,7 +34,7 @@ macro_rules! ask {
 #[macro_export]
 macro_rules! must {
     ($name:ident($($argument:expr),* $(,)?)) => {
-        assert_eq!($crate::call!($name($($argument),*)), 0, stringify!($name))
+        assert_eq!($crate::call!($name($($argument),*)), 0, concat!(stringify!($name), ": the status"))
     };
 }
 
