@@ -12,8 +12,10 @@ pub fn run(data: &[u8]) {
     let input = &mut Input::new(data);
     let n = [8, 2, 4, 6, 10, 12][input.few(6)];
     let [amplitude, phase, nyquist, selection, scheme] = [3, 2, 2, 2, 3].map(|count| input.few(count));
+    // The twin of N-GenIC's scheme knows seeds of 31 bits only.
+    let seeds = if scheme > 0 { (1 << 31) - 1 } else { u64::MAX };
     let choice = Realisation {
-        seed: input.word(),
+        seed: input.word() & seeds,
         scheme: [Scheme::Native, Scheme::NGenIc, Scheme::FastPm][scheme],
         amplitude: [Amplitude::Normal, Amplitude::Fixed, Amplitude::FixedToMean][amplitude],
         phase: [Phase::Original, Phase::Inverted][phase],
