@@ -63,8 +63,13 @@ pub fn run(data: &[u8]) {
         let found = [memory.values()[at], memory.values()[at + 1]];
         let what = format!("mode {:?} of {n}, {choice:?}", [i, j, l]);
         match &slow {
-            // The same operations in another order of modes: not a bit may differ.
-            Some(modes) => assert_eq!(found, modes[(i * n + j) * (n / 2 + 1) + l], "{what}"),
+            // The same uniforms; only the product of modulus and phase may be rounded otherwise.
+            Some(modes) => {
+                let expected = modes[(i * n + j) * (n / 2 + 1) + l];
+                for part in 0..2 {
+                    close(found[part], expected[part], 2.0 * f64::EPSILON * expected[part].abs(), &what);
+                }
+            }
             None => {
                 let expected = white_mode(n as i64, [signed(i), signed(j), signed(l)], &choice);
                 let expected = if cut(&choice, n, [signed(i), signed(j), signed(l)]) { [0.0; 2] } else { expected };
