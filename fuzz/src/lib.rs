@@ -5,10 +5,10 @@
 pub mod c {
     pub use fixpair::capi::{
         bias::*, binning::*, bispectrum::*, bispectrum_sums::*, bispectrum_values::*, built_in::*, cells::*,
-        correlation::*, cosmology::*, covariance::*, ensemble::*, evolve::*, exec::*, factors::*, fft::*, fof::*,
-        force::*, halos::*, initial::*, kick::*, matched::*, mesh::*, mode_table::*, noise::*, particles::*, pm::*,
-        posterior::*, power::*, pre_initial::*, resample::*, run::*, scatter::*, shape::*, species::*, spheres::*,
-        stages::*, status::*, third::*, triangles::*,
+        correlation::*, cosmology::*, covariance::*, ensemble::*, evolve::*, exec::*, factors::*, fft::*,
+        fof::*, force::*, halos::*, initial::*, kick::*, matched::*, mesh::*, mode_table::*, noise::*,
+        particles::*, pm::*, posterior::*, power::*, pre_initial::*, resample::*, run::*, scatter::*,
+        shape::*, species::*, spheres::*, stages::*, status::*, third::*, triangles::*,
     };
     pub use fixpair::scratch::Layout;
 }

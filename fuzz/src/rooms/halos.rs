@@ -54,7 +54,13 @@ fn maps(input: &mut Input) {
         let mut found = 0;
         let before = Before::of(&[&map]);
         let map_len = input.length(2 * entries);
-        let status = call!(fixpair_fof_merge(input.pointer(&map), map_len, &mut found, input.pointer(&pairs), input.length(entries)));
+        let status = call!(fixpair_fof_merge(
+            input.pointer(&map),
+            map_len,
+            &mut found,
+            input.pointer(&pairs),
+            input.length(entries)
+        ));
         before.check(status, &[]);
         assert!(status != 0 || found <= 2 * entries, "a map has no more entries than labels");
     } else {
@@ -100,7 +106,8 @@ fn sums(input: &mut Input) {
     }
     let (mut groups, box_size) = (0, input.about_number(BOX));
     let before = Before::of(&[&sums]);
-    let status = call!(fixpair_halo_sums_merge(input.pointer(&sums), input.length(len), &mut groups, box_size));
+    let status =
+        call!(fixpair_halo_sums_merge(input.pointer(&sums), input.length(len), &mut groups, box_size));
     before.check(status, &[]);
     assert!(status != 0 || groups <= len, "there are no more groups than sums");
     let halos = Memory::zeros(len);

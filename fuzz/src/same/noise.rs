@@ -72,7 +72,8 @@ pub fn run(data: &[u8]) {
             }
             None => {
                 let expected = white_mode(n as i64, [signed(i), signed(j), signed(l)], &choice);
-                let expected = if cut(&choice, n, [signed(i), signed(j), signed(l)]) { [0.0; 2] } else { expected };
+                let expected =
+                    if cut(&choice, n, [signed(i), signed(j), signed(l)]) { [0.0; 2] } else { expected };
                 // -ln u2 carries 1 ulp, its root half of that, the angle of the twin 2 pi u1 half an ulp of 2 pi. A mode that is its own conjugate
                 // is a cosine, possibly small, times at most sqrt(2 * 53 ln 2) = 8.6.
                 let scale = if expected[1] == 0.0 { 8.6 } else { expected[0].hypot(expected[1]) };

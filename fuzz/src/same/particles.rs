@@ -17,8 +17,12 @@ pub fn run(data: &[u8]) {
     if input.flag() { in_f32(input) } else { in_f64(input) }
 }
 
-const WINDOWS: [Window; 4] =
-    [Window::NearestGridPoint, Window::CloudInCell, Window::TriangularShapedCloud, Window::PiecewiseCubicSpline];
+const WINDOWS: [Window; 4] = [
+    Window::NearestGridPoint,
+    Window::CloudInCell,
+    Window::TriangularShapedCloud,
+    Window::PiecewiseCubicSpline,
+];
 
 /// Multiples of 1/64, edges and middles of cells among them, from two boxes below to two above: exact in both precisions, so that no particle
 /// is on the other side of an edge by rounding.
