@@ -34,7 +34,7 @@ macro_rules! ask {
 #[macro_export]
 macro_rules! must {
     ($name:ident($($argument:expr),* $(,)?)) => {
-        assert_eq!($crate::call!($name($($argument),*)), 0, stringify!($name))
+        assert_eq!($crate::call!($name($($argument),*)), 0, concat!(stringify!($name), ": the status"))
     };
 }
 
@@ -53,7 +53,8 @@ pub fn reached(name: &'static str) {
         return;
     };
     if NAMES.lock().is_ok_and(|mut names| names.insert(name)) {
-        let mut file = OpenOptions::new().create(true).append(true).open(path).expect("a file to note names in");
+        let mut file =
+            OpenOptions::new().create(true).append(true).open(path).expect("a file to note names in");
         writeln!(file, "{name}").expect("room for a name");
     }
 }
@@ -81,7 +82,11 @@ impl<'a> Before<'a> {
     pub fn check(&self, status: i32, undefined_after: &[i32]) {
         if status != FIXPAIR_OK && !undefined_after.contains(&status) {
             for (output, before) in &self.0 {
-                assert_eq!(output.hashed(), *before, "an output was touched by a call that failed with {status}");
+                assert_eq!(
+                    output.hashed(),
+                    *before,
+                    "an output was touched by a call that failed with {status}"
+                );
             }
         }
     }

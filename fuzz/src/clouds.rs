@@ -40,7 +40,13 @@ impl<T: Float> Cloud<T> {
 
     fn of(input: &mut Input, count: usize, mut value: impl FnMut(usize) -> f64) -> Self {
         let stride = [3, 1, 4, 7][input.few(4)];
-        let len = if count == 0 { 0 } else if stride == 1 { 3 * count } else { stride * (count - 1) + 3 };
+        let len = if count == 0 {
+            0
+        } else if stride == 1 {
+            3 * count
+        } else {
+            stride * (count - 1) + 3
+        };
         let lead = if input.odd(8) { 1 + input.few(3) } else { 0 };
         Self { memory: Memory::behind(lead, len, |place| T::of(value(place))), count, stride }
     }

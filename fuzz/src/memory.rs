@@ -2,7 +2,7 @@
 
 use std::alloc::{Layout, alloc, dealloc, handle_alloc_error};
 
-use crate::input::{Input, Random};
+use crate::input::Input;
 
 /// `len` values, which only the library touches during a call.
 pub struct Memory<T> {
@@ -23,6 +23,15 @@ impl<T> Memory<T> {
 
     /// The same, `lead` elements after an aligned address.
     pub fn behind(lead: usize, len: usize, mut value: impl FnMut(usize) -> T) -> Self {
+        let memory = Self::uninitialised(lead, len);
+        for place in 0..len {
+            // SAFETY: in the allocation and aligned: a type's size is a multiple of its alignment, which is at most 64.
+            unsafe { memory.pointer.add(place).write(value(place)) };
+        }
+        memory
+    }
+
+    fn uninitialised(lead: usize, len: usize) -> Self {
         let lead = lead * size_of::<T>();
         let layout = Layout::from_size_align((lead + len * size_of::<T>()).max(1), ALIGN).expect("small");
         // SAFETY: the size is not zero.
@@ -30,12 +39,7 @@ impl<T> Memory<T> {
         if base.is_null() {
             handle_alloc_error(layout);
         }
-        let pointer = base.wrapping_add(lead).cast::<T>();
-        for place in 0..len {
-            // SAFETY: in the allocation and aligned: a type's size is a multiple of its alignment, which is at most 64.
-            unsafe { pointer.add(place).write(value(place)) };
-        }
-        Self { base, pointer, len, layout }
+        Self { base, pointer: base.wrapping_add(lead).cast(), len, layout }
     }
 
     /// A struct or structs of the header, all bytes zero, as C's memset leaves them. Only for numbers, raw pointers, optional functions, and structs of these.
@@ -154,9 +158,10 @@ impl<T: Float> Memory<T> {
     }
 }
 
-/// Scratch of so many bytes, of any contents.
+/// Scratch of so many bytes, of contents that are no sensible number.
 pub fn scratch(bytes: usize) -> Memory<u8> {
-    let mut random = Random::from(bytes as u64);
-    let word = random.word() as u8;
-    Memory::new(bytes, |_| word)
+    let memory = Memory::<u8>::uninitialised(0, bytes);
+    // SAFETY: all of the memory, which holds bytes.
+    unsafe { memory.pointer.write_bytes(0xfb, bytes) };
+    memory
 }

@@ -71,7 +71,11 @@ pub fn linear(input: &mut Input, rows: &Rows) -> fixpair_linear {
     let source = if input.odd(32) { input.choice(4) } else { source };
     let normalisation = if source == 0 && input.flag() { 0 } else { 1 + input.choice(3).min(1 << 20) };
     let with = source < 2 || input.odd(32);
-    let [k, value] = if with { [0, 1].map(|column| input.pointer(&rows.columns[column]).cast_const()) } else { [null(); 2] };
+    let [k, value] = if with {
+        [0, 1].map(|column| input.pointer(&rows.columns[column]).cast_const())
+    } else {
+        [null(); 2]
+    };
     fixpair_linear {
         struct_size: if input.odd(64) { input.size() } else { size_of::<fixpair_linear>() },
         source,

@@ -43,9 +43,20 @@ fn triangles(input: &mut Input) {
     let out = Memory::new(3 * room, |_| 7_u32);
     let before = Before::of(&[&out]);
     let status = if input.flag() {
-        call!(fixpair_closed_triangles(input.pointer(&out), input.length(room), input.pointer(edges), edges_len, with))
+        call!(fixpair_closed_triangles(
+            input.pointer(&out),
+            input.length(room),
+            input.pointer(edges),
+            edges_len,
+            with
+        ))
     } else {
-        call!(fixpair_squeezed_triangles(input.pointer(&out), input.length(room), input.about(4), input.about(8)))
+        call!(fixpair_squeezed_triangles(
+            input.pointer(&out),
+            input.length(room),
+            input.about(4),
+            input.about(8)
+        ))
     };
     before.check(status, &[]);
 }
@@ -79,7 +90,11 @@ fn values(input: &mut Input) {
     let triangles = some_triangles(input, len);
     let mut random = input.random();
     let (small, spread) = (input.flag(), 60 - input.few(40));
-    let sums = Memory::new(WORDS * len, |_| if small { random.below(9) as i64 } else { random.word() as i64 >> spread });
+    let sums =
+        Memory::new(
+            WORDS * len,
+            |_| if small { random.below(9) as i64 } else { random.word() as i64 >> spread },
+        );
     let values = Memory::new(len, |_| 7.0);
     let power = Memory::<f64>::floats(input, 4, 1.0, 1e4);
     let before = Before::of(&[&values]);

@@ -36,14 +36,21 @@ fn background(input: &mut Input) {
     } else {
         let growth = Memory::zeros(a.len());
         let before = Before::of(&[&growth]);
-        let status = call!(fixpair_growth_factors(input.pointer(&growth), input.pointer(&a), len, &cosmology));
+        let status =
+            call!(fixpair_growth_factors(input.pointer(&growth), input.pointer(&a), len, &cosmology));
         before.check(status, &[]);
     }
     let mut ratio = 0.0;
     let status = call!(fixpair_growth_suppression(&mut ratio, &cosmology));
     finite(status, &[ratio]);
     let mut delta = 0.0;
-    let status = call!(fixpair_overdensity(&mut delta, input.choice(3), input.about_number(200.0), &cosmology, input.about_number(0.5)));
+    let status = call!(fixpair_overdensity(
+        &mut delta,
+        input.choice(3),
+        input.about_number(200.0),
+        &cosmology,
+        input.about_number(0.5)
+    ));
     finite(status, &[delta]);
 }
 
@@ -58,10 +65,13 @@ fn spectra(input: &mut Input) {
     let status = match input.few(4) {
         0 => call!(fixpair_linear_power(to, from, len, &cosmology, &linear, input.about_number(1.0))),
         1 => call!(fixpair_linear_transfer(to, from, len, &cosmology, &linear)),
-        2 => call!(fixpair_alpha(to, from, len, &cosmology, &linear, input.about_number(1.0), input.choice(2))),
+        2 => {
+            call!(fixpair_alpha(to, from, len, &cosmology, &linear, input.about_number(1.0), input.choice(2)))
+        }
         _ => {
             let mut sigma = 0.0;
-            let status = call!(fixpair_linear_sigma(&mut sigma, input.about_number(8.0), &cosmology, &linear));
+            let status =
+                call!(fixpair_linear_sigma(&mut sigma, input.about_number(8.0), &cosmology, &linear));
             finite(status, &[sigma]);
             return;
         }
@@ -80,7 +90,16 @@ fn tables(input: &mut Input) {
     let exec = exec(input);
     let (to, len, box_size) = (input.pointer(&table), input.length(table.len()), input.about_number(100.0));
     let status = match input.few(3) {
-        0 => call!(fixpair_potential_amplitude_table(to, len, n, box_size, &cosmology, &linear, input.choice(2), pointer(&exec))),
+        0 => call!(fixpair_potential_amplitude_table(
+            to,
+            len,
+            n,
+            box_size,
+            &cosmology,
+            &linear,
+            input.choice(2),
+            pointer(&exec)
+        )),
         1 => call!(fixpair_alpha_table(
             to,
             len,
@@ -130,8 +149,18 @@ fn scalars(input: &mut Input) {
             input.about_number(3.0),
             input.about_number(0.7)
         )),
-        1 => call!(fixpair_particle_mass(&mut value, input.about_number(0.3), input.about_number(100.0), input.size() as u64)),
-        _ => call!(fixpair_linking_length(&mut value, input.about_number(0.2), input.about_number(100.0), input.size() as u64)),
+        1 => call!(fixpair_particle_mass(
+            &mut value,
+            input.about_number(0.3),
+            input.about_number(100.0),
+            input.size() as u64
+        )),
+        _ => call!(fixpair_linking_length(
+            &mut value,
+            input.about_number(0.2),
+            input.about_number(100.0),
+            input.size() as u64
+        )),
     };
     finite(status, &[value]);
 }

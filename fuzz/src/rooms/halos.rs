@@ -1,6 +1,6 @@
 //! Friends of friends on one process and on slabs, halos, their sums, spheres and centres.
 
-use core::ptr::null;
+use core::ptr::{null, null_mut};
 
 use crate::c::*;
 use crate::check::Before;
@@ -54,7 +54,13 @@ fn maps(input: &mut Input) {
         let mut found = 0;
         let before = Before::of(&[&map]);
         let map_len = input.length(2 * entries);
-        let status = call!(fixpair_fof_merge(input.pointer(&map), map_len, &mut found, input.pointer(&pairs), input.length(entries)));
+        let status = call!(fixpair_fof_merge(
+            input.pointer(&map),
+            map_len,
+            &mut found,
+            input.pointer(&pairs),
+            input.length(entries)
+        ));
         before.check(status, &[]);
         assert!(status != 0 || found <= 2 * entries, "a map has no more entries than labels");
     } else {
@@ -100,7 +106,8 @@ fn sums(input: &mut Input) {
     }
     let (mut groups, box_size) = (0, input.about_number(BOX));
     let before = Before::of(&[&sums]);
-    let status = call!(fixpair_halo_sums_merge(input.pointer(&sums), input.length(len), &mut groups, box_size));
+    let status =
+        call!(fixpair_halo_sums_merge(input.pointer(&sums), input.length(len), &mut groups, box_size));
     before.check(status, &[]);
     assert!(status != 0 || groups <= len, "there are no more groups than sums");
     let halos = Memory::zeros(len);
@@ -127,7 +134,8 @@ macro_rules! in_precision {
                 let count = input.few(64);
                 let cloud = Cloud::<$r>::places(input, count, BOX);
                 let labels = Memory::new(count, |_| 7_u64);
-                let ids = Memory::new(if input.flag() { count } else { 0 }, |place| (count - place) as u64 * 3);
+                let given = input.flag();
+                let ids = Memory::new(if given { count } else { 0 }, |place| (count - place) as u64 * 3);
                 let mut layout = layout();
                 let asked = call!([<fixpair_fof_labels_scratch_ $r>](&mut layout, count));
                 let scratch = scratch_for(input, asked, layout);
@@ -136,7 +144,7 @@ macro_rules! in_precision {
                 let linking_length = input.about_number(near);
                 let before = Before::of(&[&labels]);
                 let status = call!([<fixpair_fof_labels_ $r>](
-                    input.pointer(&labels), input.length(count), &position, input.pointer(&ids), input.length(ids.len()), box_size, linking_length,
+                    input.pointer(&labels), input.length(count), &position, if given { input.pointer(&ids) } else { null_mut() }, ids.len(), box_size, linking_length,
                     input.pointer(&scratch).cast(), input.length(scratch.len()), pointer(&exec)
                 ));
                 before.check(status, &[FIXPAIR_ERROR_HOOK, FIXPAIR_ERROR_NOT_FINITE]);

@@ -163,8 +163,13 @@ fn grids(input: &mut Input) {
     let (likelihood, start, (free, parameters)) = (likelihood(input), bias(input), free(input));
     let mut ranges = Memory::new(2 * parameters, |place| place as f64);
     let before = Before::of(&[&ranges]);
-    let status =
-        call!(fixpair_bias_range(input.pointer(&ranges), input.length(parameters), likelihood.pointer(), &start, free));
+    let status = call!(fixpair_bias_range(
+        input.pointer(&ranges),
+        input.length(parameters),
+        likelihood.pointer(),
+        &start,
+        free
+    ));
     answered(status, &before, &[&ranges]);
     ranges.spoil(input);
     let points = Memory::new(parameters, |_| input.about(6));
@@ -195,28 +200,52 @@ fn readings(input: &mut Input) {
             let axis = input.choice(2);
             let density = Memory::new(if axis == 1 { points[1] } else { points[0] }, |_| 7.0);
             let before = Before::of(&[&density]);
-            let status = call!(fixpair_marginal(input.pointer(&density), of, points[0], points[1], axis, low, high));
+            let status =
+                call!(fixpair_marginal(input.pointer(&density), of, points[0], points[1], axis, low, high));
             answered(status, &before, &[&density]);
         }
         1 => {
             let posterior = Memory::zeros(1);
             let before = Before::of(&[&posterior]);
             let len = input.length(grid.len());
-            let status = call!(fixpair_read_posterior(input.pointer(&posterior), of, len, low, high, input.about_number(0.68)));
+            let status = call!(fixpair_read_posterior(
+                input.pointer(&posterior),
+                of,
+                len,
+                low,
+                high,
+                input.about_number(0.68)
+            ));
             before.check(status, &[]);
         }
         _ => {
             let (level, mut count) = (input.about_number(5.0), 0);
             let with = input.pointer(&ranges);
-            let status =
-                call!(fixpair_contours(core::ptr::null_mut(), 0, &mut count, of, points[0], points[1], with, level));
+            let status = call!(fixpair_contours(
+                core::ptr::null_mut(),
+                0,
+                &mut count,
+                of,
+                points[0],
+                points[1],
+                with,
+                level
+            ));
             let room = if status == 0 && !input.odd(4) { count } else { input.few(64) };
             let segments = Memory::new(4 * room, |_| 7.0);
             let before = Before::of(&[&segments]);
             let to = input.pointer(&segments);
             let mut again = 0;
-            let status =
-                call!(fixpair_contours(to, input.length(room), &mut again, of, points[0], points[1], with, level));
+            let status = call!(fixpair_contours(
+                to,
+                input.length(room),
+                &mut again,
+                of,
+                points[0],
+                points[1],
+                with,
+                level
+            ));
             before.check(status, &[]);
             assert!(status != 0 || again <= room.max(count), "segments fit");
             finite(status, segments.values());

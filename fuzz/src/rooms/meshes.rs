@@ -65,17 +65,23 @@ fn loops(input: &mut Input) {
 
 fn generators(input: &mut Input) {
     let [output, counter, key] = [4, 4, 2].map(|len| Memory::new(len, |_| input.word() as u32));
-    let _ = call!(fixpair_philox4x32_10(input.pointer(&output), input.pointer(&counter), input.pointer(&key)));
+    let _ =
+        call!(fixpair_philox4x32_10(input.pointer(&output), input.pointer(&counter), input.pointer(&key)));
     let uniforms = Memory::new(input.few(64), |_| 2.0);
     let before = Before::of(&[&uniforms]);
     let status = call!(fixpair_ranlxd1(input.pointer(&uniforms), input.length(uniforms.len()), input.word()));
     before.check(status, &[]);
     let brick = brick(input, MODES);
     if brick.n <= 64 {
-        let len = if input.odd(8) { input.few(64) } else { brick.count[0].saturating_mul(brick.count[1]).min(4096) };
+        let len = if input.odd(8) {
+            input.few(64)
+        } else {
+            brick.count[0].saturating_mul(brick.count[1]).min(4096)
+        };
         let seeds = Memory::new(len, |_| 0_u32);
         let before = Before::of(&[&seeds]);
-        let status = call!(fixpair_ngenic_seeds(input.pointer(&seeds), input.length(len), &brick, input.word()));
+        let status =
+            call!(fixpair_ngenic_seeds(input.pointer(&seeds), input.length(len), &brick, input.word()));
         before.check(status, &[]);
     }
 }

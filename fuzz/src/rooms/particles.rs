@@ -36,7 +36,7 @@ fn window(input: &mut Input) -> i32 {
 }
 
 fn shift(input: &mut Input) -> f64 {
-    [0.0, 0.5, input.about_number(-0.5)][input.few(3)]
+    [0.0, 0.5, input.about_number(0.25)][input.few(3)]
 }
 
 /// The law of the initialiser, or any other.

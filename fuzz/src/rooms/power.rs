@@ -49,7 +49,10 @@ fn edges(input: &mut Input) {
         }
     };
     before.check(status, &[]);
-    assert!(status != 0 || edges.values()[..len.min(edges.len())].windows(2).all(|pair| pair[0] < pair[1]), "edges increase");
+    assert!(
+        status != 0 || edges.values()[..len.min(edges.len())].windows(2).all(|pair| pair[0] < pair[1]),
+        "edges increase"
+    );
 }
 
 /// A binning of all kinds, which refers to its edges.
@@ -72,7 +75,8 @@ impl Bins {
         }
         if input.flag() {
             binning.orders = if input.odd(32) { input.word() as u32 } else { 1 + input.few(31) as u32 };
-            binning.axis = [0, 0, 1].map(|axis| if input.odd(4) { input.about_number(1.0) } else { f64::from(axis) });
+            binning.axis =
+                [0, 0, 1].map(|axis| if input.odd(4) { input.about_number(1.0) } else { f64::from(axis) });
             binning.second = input.choice(3);
             if binning.second != 0 || input.odd(16) {
                 binning.second_edges = input.pointer(&second_edges);

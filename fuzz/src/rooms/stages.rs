@@ -31,7 +31,12 @@ fn rows(input: &mut Input) {
     let rows = Memory::zeros(input.few(12));
     let mut count = 0;
     let before = Before::of(&[&rows]);
-    let status = call!(fixpair_shape_rows(input.pointer(&rows), input.length(rows.len()), &mut count, input.choice(5)));
+    let status = call!(fixpair_shape_rows(
+        input.pointer(&rows),
+        input.length(rows.len()),
+        &mut count,
+        input.choice(5)
+    ));
     before.check(status, &[]);
 }
 
@@ -160,4 +165,3 @@ macro_rules! in_precision {
 
 in_precision!(f64, some_double);
 in_precision!(f32, some_single);
-

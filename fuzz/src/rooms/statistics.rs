@@ -53,14 +53,20 @@ fn ensembles(input: &mut Input) {
     let rows = input.few(5);
     let samples = Memory::<f64>::floats(input, values * rows, -1.0, 1.0);
     let before = Before::of(&[&state]);
-    let status = call!(fixpair_ensemble_add(input.pointer(&state), len, input.pointer(&samples), input.length(samples.len())));
+    let status = call!(fixpair_ensemble_add(
+        input.pointer(&state),
+        len,
+        input.pointer(&samples),
+        input.length(samples.len())
+    ));
     before.check(status, &[]);
     let other_rows = input.few(5);
     let more = Memory::<f64>::floats(input, values * other_rows, 1e3, 1e5);
     let _ = call!(fixpair_ensemble_add(other.pointer(), len, more.pointer(), more.len()));
     state.spoil(input);
     let before = Before::of(&[&other]);
-    let status = call!(fixpair_ensemble_merge(input.pointer(&other), input.length(len), input.pointer(&state)));
+    let status =
+        call!(fixpair_ensemble_merge(input.pointer(&other), input.length(len), input.pointer(&state)));
     before.check(status, &[]);
     let mut count = 0;
     let _ = call!(fixpair_ensemble_count(&mut count, input.pointer(&other), len));
@@ -72,8 +78,18 @@ fn ensembles(input: &mut Input) {
         0 => call!(fixpair_ensemble_mean(to, input.length(values), of, len)),
         1 => call!(fixpair_ensemble_deviation(to, input.length(values), of, len)),
         2 => call!(fixpair_ensemble_error_of_mean(to, input.length(values), of, len)),
-        3 => call!(fixpair_ensemble_covariance(square, rows, columns, of, len, input.about(6), input.about(6))),
-        _ => call!(fixpair_ensemble_correlation(square, rows, columns, of, len, input.about(6), input.about(6))),
+        3 => {
+            call!(fixpair_ensemble_covariance(square, rows, columns, of, len, input.about(6), input.about(6)))
+        }
+        _ => call!(fixpair_ensemble_correlation(
+            square,
+            rows,
+            columns,
+            of,
+            len,
+            input.about(6),
+            input.about(6)
+        )),
     };
     answered(status, &before, &[&mean, &matrix]);
 }
@@ -99,11 +115,25 @@ fn resampling(input: &mut Input) {
     let of = input.pointer(&samples);
     let before = Before::of(&[&mean, &error, &deleted, &square]);
     let status = match input.few(4) {
-        0 => call!(fixpair_resampled_mean(input.pointer(&mean), values, of, rows, input.pointer(&indices), input.length(len))),
+        0 => call!(fixpair_resampled_mean(
+            input.pointer(&mean),
+            values,
+            of,
+            rows,
+            input.pointer(&indices),
+            input.length(len)
+        )),
         1 => call!(fixpair_jackknife_means(input.pointer(&deleted), of, rows, values)),
         2 => {
             let whole = Memory::<f64>::floats(input, values, -1.0, 1.0);
-            call!(fixpair_jackknife(input.pointer(&mean), input.pointer(&error), input.pointer(&whole), input.length(values), of, rows))
+            call!(fixpair_jackknife(
+                input.pointer(&mean),
+                input.pointer(&error),
+                input.pointer(&whole),
+                input.length(values),
+                of,
+                rows
+            ))
         }
         _ => call!(fixpair_jackknife_covariance(input.pointer(&square), of, rows, values)),
     };
@@ -126,15 +156,24 @@ fn scatter(input: &mut Input) {
     let declared = input.length(len);
     let before = Before::of(&[&sigma]);
     let status = match input.few(5) {
-        0 => call!(fixpair_continuum_modes(to, wave, declared, input.about_number(0.01), input.about_number(1e3))),
+        0 => call!(fixpair_continuum_modes(
+            to,
+            wave,
+            declared,
+            input.about_number(0.01),
+            input.about_number(1e3)
+        )),
         1 => call!(fixpair_sigma_gaussian(to, spectrum, number, declared, noise)),
         2 => call!(fixpair_sigma_suppressed(to, &left, wave, spectrum, number, declared, noise)),
         3 => {
             let edges = some_edges(input, 5);
             let counts = Memory::new(edges.len().saturating_sub(1), |_| 7_u64);
             let before = Before::of(&[&counts]);
-            let status =
-                call!(fixpair_lattice_modes(input.pointer(&counts), input.pointer(&edges), input.length(edges.len())));
+            let status = call!(fixpair_lattice_modes(
+                input.pointer(&counts),
+                input.pointer(&edges),
+                input.length(edges.len())
+            ));
             before.check(status, &[]);
             return;
         }
@@ -158,7 +197,10 @@ fn scatter(input: &mut Input) {
             return;
         }
     };
-    assert!(status != 0 || declared == len || sigma.len() > declared, "a length that was taken is one that is there");
+    assert!(
+        status != 0 || declared == len || sigma.len() > declared,
+        "a length that was taken is one that is there"
+    );
     before.check(status, &[]);
     finite(status, sigma.values());
 }
@@ -172,9 +214,19 @@ fn ratios(input: &mut Input) {
     let before = Before::of(&[&value, &error]);
     let (to, to_error, declared) = (input.pointer(&value), input.pointer(&error), input.length(len));
     let (above, below) = (input.pointer(&first), input.pointer(&second));
-    let (above_error, below_error, with) = (input.pointer(&error1), input.pointer(&error2), input.optional(&rho));
+    let (above_error, below_error, with) =
+        (input.pointer(&error1), input.pointer(&error2), input.optional(&rho));
     let status = match input.few(4) {
-        0 => call!(fixpair_ratio_of_means(to, to_error, above, above_error, below, below_error, with, declared)),
+        0 => call!(fixpair_ratio_of_means(
+            to,
+            to_error,
+            above,
+            above_error,
+            below,
+            below_error,
+            with,
+            declared
+        )),
         1 => call!(fixpair_difference_of_means(
             to,
             to_error,
@@ -187,7 +239,14 @@ fn ratios(input: &mut Input) {
             declared
         )),
         2 => call!(fixpair_pair_average(to, above, below, declared)),
-        _ => call!(fixpair_sigma_per_simulation(to, to_error, above_error, declared, amount(input), amount(input))),
+        _ => call!(fixpair_sigma_per_simulation(
+            to,
+            to_error,
+            above_error,
+            declared,
+            amount(input),
+            amount(input)
+        )),
     };
     answered(status, &before, &[&value, &error]);
 }
@@ -219,11 +278,17 @@ fn controls(input: &mut Input) {
         let difference = Memory::zeros(1);
         let before = Before::of(&[&difference]);
         let len = input.length(y.len());
-        let status = call!(fixpair_matched_difference(input.pointer(&difference), input.pointer(&y), input.pointer(&c), len));
+        let status = call!(fixpair_matched_difference(
+            input.pointer(&difference),
+            input.pointer(&y),
+            input.pointer(&c),
+            len
+        ));
         before.check(status, &[]);
         return;
     }
-    let (mu, error) = (Memory::<f64>::floats(input, values, -1.0, 1.0), Memory::<f64>::floats(input, values, 0.0, 1.0));
+    let (mu, error) =
+        (Memory::<f64>::floats(input, values, -1.0, 1.0), Memory::<f64>::floats(input, values, 0.0, 1.0));
     let mut layout = layout();
     let asked = call!(fixpair_control_variates_scratch(&mut layout, rows));
     let scratch = scratch_for(input, asked, layout);

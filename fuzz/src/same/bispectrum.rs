@@ -29,11 +29,20 @@ pub fn run(data: &[u8]) {
     let fft = double(n);
     let modes = Memory::new(fft.length, |_| random.unit() - 0.5);
     // Reality: conjugates on the planes l = 0 and n/2 come from a transform of reals.
-    let (Some(forward), true) = (fft.forward, fft.length > 0) else { unreachable!("the built-in transform has both") };
+    let (Some(forward), true) = (fft.forward, fft.length > 0) else {
+        unreachable!("the built-in transform has both")
+    };
     // SAFETY: `length` reals of the layout that the transform says.
     assert_eq!(unsafe { forward(fft.context, modes.pointer()) }, 0);
     let mut layout = layout();
-    must!(fixpair_triangle_counts_scratch(&mut layout, triangles.as_ptr(), count, edges.as_ptr(), edges.len(), n));
+    must!(fixpair_triangle_counts_scratch(
+        &mut layout,
+        triangles.as_ptr(),
+        count,
+        edges.as_ptr(),
+        edges.len(),
+        n
+    ));
     let scratch = scratch_for(&mut Input::new(&[]), 0, layout);
     let counts = Memory::new(count, |_| 7_u64);
     must!(fixpair_triangle_counts(
@@ -78,7 +87,13 @@ pub fn run(data: &[u8]) {
         assert_eq!(counts.values()[place], expected_count, "n = {n}, {edges:?}, {triangle:?}");
         // Rounding of transforms and products against the product of the fields' r.m.s.; modes are of the size of sqrt(n^3/12).
         let size = (cells / 12.0).powf(1.5);
-        let scale = of.iter().map(|shell| (shell.len() as f64).sqrt()).product::<f64>() + expected_count as f64;
-        close(values.values()[place] / cells, sum, 1e-13 * scale * size, &format!("n = {n}, {edges:?}, {triangle:?}"));
+        let scale =
+            of.iter().map(|shell| (shell.len() as f64).sqrt()).product::<f64>() + expected_count as f64;
+        close(
+            values.values()[place] / cells,
+            sum,
+            1e-13 * scale * size,
+            &format!("n = {n}, {edges:?}, {triangle:?}"),
+        );
     }
 }

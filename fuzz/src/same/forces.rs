@@ -17,8 +17,12 @@ pub fn run(data: &[u8]) {
     let box_size = [1.0, 100.0, 1e4][input.few(3)];
     let split_scale = [0.0, 0.5, 1.25][input.few(3)] * box_size / n as f64;
     let differences = [Difference::Exact, Difference::TwoPoint, Difference::FourPoint];
-    let windows =
-        [Window::NearestGridPoint, Window::CloudInCell, Window::TriangularShapedCloud, Window::PiecewiseCubicSpline];
+    let windows = [
+        Window::NearestGridPoint,
+        Window::CloudInCell,
+        Window::TriangularShapedCloud,
+        Window::PiecewiseCubicSpline,
+    ];
     let law = ForceLaw {
         laplacian: differences[laplacian],
         gradient: differences[gradient],
@@ -44,7 +48,9 @@ pub fn run(data: &[u8]) {
     let mut layout = layout();
     must!(fixpair_force_scratch(&mut layout, n));
     let scratch = scratch_for(&mut Input::new(&[]), 0, layout);
-    let (Some(forward), Some(inverse)) = (fft.forward, fft.inverse) else { unreachable!("the built-in transform has both") };
+    let (Some(forward), Some(inverse)) = (fft.forward, fft.inverse) else {
+        unreachable!("the built-in transform has both")
+    };
     // SAFETY: `length` reals of the layout that the transform says.
     assert_eq!(unsafe { forward(fft.context, meshes[0].pointer()) }, 0);
     let (work, work_len) = (scratch.pointer().cast(), scratch.len());
@@ -53,7 +59,19 @@ pub fn run(data: &[u8]) {
     let expected = fields(n, box_size, &masses, &law);
     let compared: &[usize] = match input.few(3) {
         0 => {
-            must!(fixpair_forces_f64(first, second, third, fft.length, brick, &asked, box_size, mass, work, work_len, null()));
+            must!(fixpair_forces_f64(
+                first,
+                second,
+                third,
+                fft.length,
+                brick,
+                &asked,
+                box_size,
+                mass,
+                work,
+                work_len,
+                null()
+            ));
             &[0, 1, 2]
         }
         1 => {
@@ -75,7 +93,17 @@ pub fn run(data: &[u8]) {
             &[1, 2]
         }
         _ => {
-            must!(fixpair_potential_f64(first, fft.length, brick, &asked, box_size, mass, work, work_len, null()));
+            must!(fixpair_potential_f64(
+                first,
+                fft.length,
+                brick,
+                &asked,
+                box_size,
+                mass,
+                work,
+                work_len,
+                null()
+            ));
             &[3]
         }
     };
@@ -88,7 +116,12 @@ pub fn run(data: &[u8]) {
         let largest = expected[field].iter().fold(0.0, |most: f64, value| most.max(value.abs()));
         let unit = if field == 3 { box_size * box_size } else { box_size };
         for (c, &value) in expected[field].iter().enumerate() {
-            close(mesh.values()[at(c)], value, 1e-13 * largest + 1e-17 * unit, &format!("field {field} of {law:?}"));
+            close(
+                mesh.values()[at(c)],
+                value,
+                1e-13 * largest + 1e-17 * unit,
+                &format!("field {field} of {law:?}"),
+            );
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Friends of friends and spheres against all pairs and all distances: labels and members are the same, not nearly so.
 
-use core::ptr::null;
+use core::ptr::{null, null_mut};
 
 use crate::c::*;
 use crate::hooks::{layout, scratch_for};
@@ -49,7 +49,7 @@ macro_rules! in_precision {
                     must!([<fixpair_fof_labels_scratch_ $r>](&mut layout, count));
                     let scratch = scratch_for(&mut Input::new(&[]), 0, layout);
                     must!([<fixpair_fof_labels_ $r>](
-                        labels.pointer(), count, &position, ids.pointer(), ids.len(), box_size, length, scratch.pointer().cast(), scratch.len(), null()
+                        labels.pointer(), count, &position, if given { ids.pointer() } else { null_mut() }, ids.len(), box_size, length, scratch.pointer().cast(), scratch.len(), null()
                     ));
                     let expected = fof::labels(&narrow, given.then(|| ids.values()), box_size, length);
                     assert_eq!(labels.values(), expected, "length {length}, {narrow:?}");

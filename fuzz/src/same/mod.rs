@@ -11,5 +11,8 @@ pub mod transform;
 
 /// Are both sides the same but for so much?
 fn close(found: f64, expected: f64, tolerance: f64, what: &str) {
-    assert!((found - expected).abs() <= tolerance, "{what}: {found:e} instead of {expected:e}, tolerance {tolerance:e}");
+    assert!(
+        (found - expected).abs() <= tolerance,
+        "{what}: {found:e} instead of {expected:e}, tolerance {tolerance:e}"
+    );
 }

@@ -12,8 +12,10 @@ pub fn run(data: &[u8]) {
     let input = &mut Input::new(data);
     let n = [8, 2, 4, 6, 10, 12][input.few(6)];
     let [amplitude, phase, nyquist, selection, scheme] = [3, 2, 2, 2, 3].map(|count| input.few(count));
+    // The twin of N-GenIC's scheme knows seeds of 31 bits only.
+    let seeds = if scheme > 0 { (1 << 31) - 1 } else { u64::MAX };
     let choice = Realisation {
-        seed: input.word(),
+        seed: input.word() & seeds,
         scheme: [Scheme::Native, Scheme::NGenIc, Scheme::FastPm][scheme],
         amplitude: [Amplitude::Normal, Amplitude::Fixed, Amplitude::FixedToMean][amplitude],
         phase: [Phase::Original, Phase::Inverted][phase],
@@ -61,11 +63,17 @@ pub fn run(data: &[u8]) {
         let found = [memory.values()[at], memory.values()[at + 1]];
         let what = format!("mode {:?} of {n}, {choice:?}", [i, j, l]);
         match &slow {
-            // The same operations in another order of modes: not a bit may differ.
-            Some(modes) => assert_eq!(found, modes[(i * n + j) * (n / 2 + 1) + l], "{what}"),
+            // The same uniforms; only the product of modulus and phase may be rounded otherwise.
+            Some(modes) => {
+                let expected = modes[(i * n + j) * (n / 2 + 1) + l];
+                for part in 0..2 {
+                    close(found[part], expected[part], 2.0 * f64::EPSILON * expected[part].abs(), &what);
+                }
+            }
             None => {
                 let expected = white_mode(n as i64, [signed(i), signed(j), signed(l)], &choice);
-                let expected = if cut(&choice, n, [signed(i), signed(j), signed(l)]) { [0.0; 2] } else { expected };
+                let expected =
+                    if cut(&choice, n, [signed(i), signed(j), signed(l)]) { [0.0; 2] } else { expected };
                 // -ln u2 carries 1 ulp, its root half of that, the angle of the twin 2 pi u1 half an ulp of 2 pi. A mode that is its own conjugate
                 // is a cosine, possibly small, times at most sqrt(2 * 53 ln 2) = 8.6.
                 let scale = if expected[1] == 0.0 { 8.6 } else { expected[0].hypot(expected[1]) };

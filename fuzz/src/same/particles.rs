@@ -17,8 +17,12 @@ pub fn run(data: &[u8]) {
     if input.flag() { in_f32(input) } else { in_f64(input) }
 }
 
-const WINDOWS: [Window; 4] =
-    [Window::NearestGridPoint, Window::CloudInCell, Window::TriangularShapedCloud, Window::PiecewiseCubicSpline];
+const WINDOWS: [Window; 4] = [
+    Window::NearestGridPoint,
+    Window::CloudInCell,
+    Window::TriangularShapedCloud,
+    Window::PiecewiseCubicSpline,
+];
 
 /// Multiples of 1/64, edges and middles of cells among them, from two boxes below to two above: exact in both precisions, so that no particle
 /// is on the other side of an edge by rounding.
@@ -34,7 +38,7 @@ macro_rules! in_precision {
         pastey::paste! {
             fn [<in_ $r>](input: &mut Input) {
                 let n = [4, 6, 8, 10][input.few(4)];
-                let (which, shift, count) = (input.few(4), [0.0, 0.5, -0.25][input.few(3)], input.few(10));
+                let (which, shift, count) = (input.few(4), [0.0, 0.5, 0.25][input.few(3)], input.few(10));
                 let (window, code) = (WINDOWS[which], which as i32 + 1);
                 let all = places(input, count, n);
                 let stride = 3 + input.few(2);

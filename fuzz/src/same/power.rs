@@ -19,8 +19,12 @@ const PARALLELS: [&[f64]; 2] = [&[0.0, 1.0, 2.3, 8.0], &[1.0, 1.7, 4.0]];
 const AXES: [[f64; 3]; 5] =
     [[0.0, 0.0, 1.0], [0.0, 3.3, 0.0], [-2.0, 0.0, 0.0], [1.0, 2.0, 3.0], [0.3, -0.8, 0.01]];
 
-const WINDOWS: [Window; 4] =
-    [Window::NearestGridPoint, Window::CloudInCell, Window::TriangularShapedCloud, Window::PiecewiseCubicSpline];
+const WINDOWS: [Window; 4] = [
+    Window::NearestGridPoint,
+    Window::CloudInCell,
+    Window::TriangularShapedCloud,
+    Window::PiecewiseCubicSpline,
+];
 
 fn compensation(input: &mut Input) -> (Compensation, i32) {
     let which = input.few(4);
@@ -111,7 +115,16 @@ pub fn run(data: &[u8]) {
         correlation(first.values(), n, &binning)
     };
     let (bins, values) = (Memory::<Bin>::zeros(bins_len), Memory::new(values_len, |_| 7.0));
-    must!(fixpair_binning_read(bins.pointer(), bins_len, values.pointer(), values_len, sums.pointer(), words, &asked, 1));
+    must!(fixpair_binning_read(
+        bins.pointer(),
+        bins_len,
+        values.pointer(),
+        values_len,
+        sums.pointer(),
+        words,
+        &asked,
+        1
+    ));
     compare(&binning, bins.values(), values.values(), &slow, of_modes);
 }
 

@@ -43,18 +43,27 @@ fn ensembles(input: &mut Input) {
     must!(fixpair_ensemble_mean(mean.pointer(), values, states[0].pointer(), len));
     must!(fixpair_ensemble_covariance(matrix.pointer(), values, values, states[0].pointer(), len, 0, 0));
     // A dozen roundings of samples up to 1000.
-    mean.values().iter().zip(means(&all, values)).for_each(|(&mean, expected)| close(mean, expected, 1e-11, "mean"));
+    mean.values()
+        .iter()
+        .zip(means(&all, values))
+        .for_each(|(&mean, expected)| close(mean, expected, 1e-11, "mean"));
     let expected = covariance(&all, values);
-    matrix.values().iter().zip(expected).for_each(|(&found, expected)| close(found, expected, 1e-11, "covariance"));
+    matrix
+        .values()
+        .iter()
+        .zip(expected)
+        .for_each(|(&found, expected)| close(found, expected, 1e-11, "covariance"));
 }
 
 fn likelihoods(input: &mut Input) {
     let len = 1 + input.few(8);
     let mut random = input.random();
-    let mut some = |low: f64, high: f64| -> Vec<f64> { (0..len).map(|_| low + (high - low) * random.unit()).collect() };
+    let mut some =
+        |low: f64, high: f64| -> Vec<f64> { (0..len).map(|_| low + (high - low) * random.unit()).collect() };
     let (power, sigma) = (some(1e4, 2e4), some(100.0, 1000.0));
     let (linear, alpha) = (some(1e3, 1e4), some(100.0, 1e4));
-    let [b_g, p, f_nl] = [(1.0, 3.0), (0.5, 1.5), (-100.0, 100.0)].map(|(low, high)| input.between(low, high));
+    let [b_g, p, f_nl] =
+        [(1.0, 3.0), (0.5, 1.5), (-100.0, 100.0)].map(|(low, high)| input.between(low, high));
     let at = Bias { b_g, p, f_nl, delta_c: 1.686 };
     let matter = input.few(2);
     let spectrum = [Spectrum::HaloHalo, Spectrum::HaloMatter][matter];
@@ -71,7 +80,8 @@ fn likelihoods(input: &mut Input) {
     ));
     let mut found = 0.0;
     must!(fixpair_likelihood_chi_squared(&mut found, likelihood.pointer(), &at));
-    let models: Vec<f64> = linear.iter().zip(&alpha).map(|(&linear, &alpha)| model(&at, spectrum, linear, alpha)).collect();
+    let models: Vec<f64> =
+        linear.iter().zip(&alpha).map(|(&linear, &alpha)| model(&at, spectrum, linear, alpha)).collect();
     let expected = chi_squared(&power, &models, &sigma);
     // Terms of chi^2 before they cancel: data and model over sigma, squared.
     let terms = |of: &[f64]| of.iter().zip(&sigma).map(|(value, sigma)| (value / sigma).powi(2)).sum::<f64>();
@@ -103,7 +113,8 @@ fn controls(input: &mut Input) {
     let mut layout = layout();
     must!(fixpair_carpool_scratch(&mut layout, values, controls));
     let scratch = scratch_for(&mut Input::new(&[]), 0, layout);
-    let [mean, matrix, beta] = [values, values * values, values * controls].map(|len| Memory::new(len, |_| 7.0));
+    let [mean, matrix, beta] =
+        [values, values * values, values * controls].map(|len| Memory::new(len, |_| 7.0));
     must!(fixpair_carpool(
         mean.pointer(),
         matrix.pointer(),
@@ -122,6 +133,10 @@ fn controls(input: &mut Input) {
     let expected = carpool(&y, &c, &mu, if exact { &zeros } else { &of_mu }, rows);
     // Samples of a control and its regression are of order one; their covariance is not worse conditioned than 1e3.
     for (found, expected) in [(&mean, expected.0), (&matrix, expected.1), (&beta, expected.2)] {
-        found.values().iter().zip(expected).for_each(|(&found, expected)| close(found, expected, 1e-10, "carpool"));
+        found
+            .values()
+            .iter()
+            .zip(expected)
+            .for_each(|(&found, expected)| close(found, expected, 1e-10, "carpool"));
     }
 }
