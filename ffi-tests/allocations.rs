@@ -28,7 +28,7 @@ fn counted_calls() -> PathBuf {
 )]
 fn no_call_allocates() {
     let header = counted_calls();
-    let counted = |source| {
+    let counted = |source: &str| {
         // Thread-local variables came with C11.
         let mut command = compiler(Language::C, source);
         command.args(["-std=c11", "-pthread", "-I"]).arg(folder()).arg("-I").arg(root().join("ffi-tests"));

@@ -145,11 +145,11 @@ thread() {
 miri() {
   announce "Miri: the unit tests of what needs no instructions beyond the baseline and no files"
   if ! cargo miri --version >/dev/null 2>&1; then
-    skip optional "no Miri here: it is a component of nightly toolchains (rustup +nightly component add miri)"
+    skip optional "no Miri here: it is a component of nightly toolchains (rustup component add miri)"
     return
   fi
   # Hours for meshes; the hand-written pointers are those of executors, bricks, borders and scratch.
-  timed "miri" cargo miri test --locked --no-default-features --features std --lib -- exec:: mesh:: scratch:: walk::
+  timed "miri" cargo miri test --locked --lib -- exec:: mesh:: scratch:: walk:: border::
 }
 
 instruments=("$@")
