@@ -111,7 +111,7 @@ address() {
   finds "address leak" "detected memory leaks" "$target/faults-address" leak
   timed "address concurrent" "$target/concurrent-address"
   timed "address refusals" "$target/refusals-address"
-  timed "address fuzz" "$target/fuzz-address"
+  timed "address fuzz" "$target/fuzz-address" 2000
   timed "address conformance" "$target/conformance-address" "$vectors"
 }
 
