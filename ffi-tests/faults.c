@@ -1,13 +1,14 @@
 /*
  * Faults of a host that only an instrument sees, each where the library touches the memory; instruments.sh has each instrument find its own.
  *
- * faults overflow | uninitialised | leak | race
+ * faults overflow | uninitialised | leak | race | chunks
  */
 #define _POSIX_C_SOURCE 200112L
 
 #include <pthread.h>
 
 #include "check.h"
+#include "handovers.h"
 
 enum { VALUES = 64 };
 
@@ -24,6 +25,11 @@ static void *expand(void *argument) {
         fixpair_expansion(t->out, t->in, VALUES, &t->cosmology);
     }
     return NULL;
+}
+
+static void expand_chunk(void *argument, size_t index) {
+    (void)index;
+    expand(argument);
 }
 
 int main(int count, char **arguments) {
@@ -49,6 +55,14 @@ int main(int count, char **arguments) {
         MUST(fixpair_threads_create(&threads, &pool, 1));
         threads = NULL;
         memset(&pool, 0, sizeof pool);
+    }
+    if (strcmp(fault, "chunks") == 0) {
+        fixpair_threads *threads;
+        fixpair_exec pool, hook;
+        MUST(fixpair_threads_create(&threads, &pool, 4));
+        hook = followed(&pool);
+        CHECK(hook.parallel_for(hook.context, 64, expand_chunk, &t) == 0);
+        fixpair_threads_destroy(threads);
     }
     if (strcmp(fault, "race") == 0) {
         pthread_t thread;

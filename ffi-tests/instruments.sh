@@ -13,6 +13,7 @@ vectors=$PWD/target/ffi/vectors.txt
 system=(-pthread -ldl -lm)
 options=(-std=c99 -pedantic -Wall -Wextra -Werror -O1 -g -ffp-contract=off -pthread -I include)
 mkdir -p "$target"
+trap 'jobs -p | xargs -r kill 2>/dev/null || true' EXIT
 
 announce() { printf '\n--> %s\n' "$*"; }
 
@@ -62,7 +63,7 @@ instrumented() {
     cargo rustc --locked --profile instruments --lib --crate-type staticlib --target "$platform" --target-dir "$target/$sanitizer" "$@"
 }
 
-on_this_platform() { rustc -vV | grep -q "^host: $platform$" && [ -e "$(rustc --print sysroot)/lib/rustlib/$platform" ]; }
+on_this_platform() { rustc -vV | grep -qx "host: $platform"; }
 
 memcheck() {
   announce "memcheck: the library as it is shipped, every bit that decides something, every block"
@@ -79,10 +80,13 @@ memcheck() {
   finds "memcheck overflow" "Invalid write" "${watch[@]}" "$target/faults-memcheck" overflow
   finds "memcheck uninitialised" "uninitialised value" "${watch[@]}" "$target/faults-memcheck" uninitialised
   finds "memcheck leak" "definitely lost" "${watch[@]}" "$target/faults-memcheck" leak
+  # The longest beside the others; Valgrind runs one thread at a time, so pools of several sizes are no other test.
+  timed "memcheck conformance" "${watch[@]}" "$target/conformance-memcheck" "$vectors" 02 &
+  local longest=$!
   timed "memcheck concurrent" "${watch[@]}" "$target/concurrent-memcheck" 1
   timed "memcheck refusals" "${watch[@]}" "$target/refusals-memcheck"
   timed "memcheck fuzz" "${watch[@]}" "$target/fuzz-memcheck" 200
-  timed "memcheck conformance" "${watch[@]}" "$target/conformance-memcheck" "$vectors"
+  wait "$longest"
 }
 
 address() {
@@ -107,7 +111,7 @@ address() {
   finds "address leak" "detected memory leaks" "$target/faults-address" leak
   timed "address concurrent" "$target/concurrent-address"
   timed "address refusals" "$target/refusals-address"
-  timed "address fuzz" "$target/fuzz-address"
+  timed "address fuzz" "$target/fuzz-address" 2000
   timed "address conformance" "$target/conformance-address" "$vectors"
 }
 
@@ -124,24 +128,28 @@ thread() {
   released
   # The dense algebra of faer runs on no threads.
   instrumented thread --no-default-features --features std
-  local name
+  # Rust's runtime, for clang's may be older than what Rust calls.
+  local name runtime=$(rustc --print sysroot)/lib/rustlib/$platform/lib/librustc-stable_rt.tsan.a
   for name in faults concurrent conformance; do
-    clang "${options[@]}" -fsanitize=thread -DFIXPAIR_NO_LINALG "ffi-tests/$name.c" \
-      "$target/thread/$platform/instruments/libfixpair.a" "${system[@]}" -o "$target/$name-thread"
+    clang "${options[@]}" -fsanitize=thread -DFIXPAIR_NO_LINALG -c "ffi-tests/$name.c" -o "$target/$name-thread.o"
+    clang -pthread "$target/$name-thread.o" "$target/thread/$platform/instruments/libfixpair.a" \
+      -Wl,--whole-archive "$runtime" -Wl,--no-whole-archive -ldl -lm -lrt -o "$target/$name-thread"
   done
+  export TSAN_OPTIONS=suppressions=$PWD/ffi-tests/thread_sanitizer.supp
   finds "thread race" "data race" "$target/faults-thread" race
+  finds "thread chunks" "data race" "$target/faults-thread" chunks
   timed "thread concurrent" "$target/concurrent-thread"
-  timed "thread conformance" "$target/conformance-thread" "$vectors"
+  timed "thread conformance" "$target/conformance-thread" "$vectors" 24
 }
 
 miri() {
   announce "Miri: the unit tests of what needs no instructions beyond the baseline and no files"
   if ! cargo miri --version >/dev/null 2>&1; then
-    skip optional "no Miri here: it is a component of nightly toolchains (rustup +nightly component add miri)"
+    skip optional "no Miri here: it is a component of nightly toolchains (rustup component add miri)"
     return
   fi
   # Hours for meshes; the hand-written pointers are those of executors, bricks, borders and scratch.
-  timed "miri" cargo miri test --locked --no-default-features --features std --lib -- exec:: mesh:: scratch:: walk::
+  timed "miri" cargo miri test --locked --lib -- exec:: mesh:: scratch:: walk:: border::
 }
 
 instruments=("$@")

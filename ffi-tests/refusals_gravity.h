@@ -25,7 +25,9 @@ static X(fixpair_components) *X(vectors_at)(int pointer, size_t count) {
 
 /* Faults of what a function reads; `out` is some output. */
 static void X(refuse_views)(X(fixpair_positions) *view, void *out) {
-    REAL *x = (REAL *)(uintptr_t)view->x;
+    REAL *x;
+    restore();
+    x = (REAL *)(uintptr_t)view->x;
     REFUSED(FIXPAIR_ERROR_NULL, view->x = NULL);
     REFUSED(FIXPAIR_ERROR_NULL, view->z = NULL);
     REFUSED(FIXPAIR_ERROR_ALIGNMENT, view->y = (REAL *)(void *)((char *)x + sizeof(REAL) / 2));

@@ -33,7 +33,7 @@ fn a_chunk_may_call_its_own_pool() {
 
 #[test]
 fn callers_at_once_each_get_all_their_chunks() {
-    const LOOPS: usize = 200;
+    const LOOPS: usize = if cfg!(miri) { 4 } else { 200 };
     let pool = Threads::new(3).unwrap();
     std::thread::scope(|scope| {
         for caller in 0..4 {
@@ -83,7 +83,7 @@ fn after_a_chunk_that_panics_all_threads_work_on() {
 
 #[test]
 fn pools_come_and_go() {
-    for round in 0..100 {
+    for round in 0..if cfg!(miri) { 10 } else { 100 } {
         let pool = Threads::new(1 + round % 5).unwrap();
         if round % 2 == 0 {
             pool.parallel_for(3, &|_| ()).unwrap();
