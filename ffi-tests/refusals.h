@@ -263,7 +263,7 @@ static void refuse_bricks(fixpair_brick *brick) {
     REFUSED(FIXPAIR_ERROR_MESH_SIZE, brick->n = n + 1);
     REFUSED(FIXPAIR_ERROR_MESH_SIZE, brick->n = SIZE_MAX);
     REFUSED(FIXPAIR_ERROR_OVERFLOW, brick->n = SIZE_MAX - 1);
-    REFUSED(FIXPAIR_ERROR_OVERFLOW, brick->n = (size_t)1 << (sizeof(size_t) * 8 / 3));
+    REFUSED(FIXPAIR_ERROR_OVERFLOW, brick->n = ((size_t)1 << 21) + 2);
     REFUSED(FIXPAIR_ERROR_CHOICE, brick->space = 2);
     REFUSED(FIXPAIR_ERROR_CHOICE, brick->space = INT32_MIN);
     REFUSED(FIXPAIR_ERROR_BRICK, brick->space = other);
