@@ -18,6 +18,7 @@
  *  3. A function that can fail returns a status: 0 if it did what it says, else a negative FIXPAIR_ERROR_ code, with all outputs
  *     untouched unless its block says otherwise. fixpair_status_message says what is wrong. Parameters and tables are checked
  *     for NaN; modes are not, unless the block says so: NaN in, NaN out. Particles and power spectra of them are refused.
+ *     No input makes a function panic, abort or exit.
  *  4. Unless stated, no pointer may be NULL, pointers are aligned to their element, and memory that is written overlaps nothing else.
  *     A length follows its array. It counts elements, for scratch bytes. An array of length 0 may be NULL. What breaks these rules is
  *     refused: FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, and FIXPAIR_ERROR_OVERFLOW for what is too long to be in memory.
