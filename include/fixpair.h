@@ -68,7 +68,7 @@
 /* A brick does not fit its mesh, its memory, or the function. */
 #define FIXPAIR_ERROR_BRICK (-7)
 
-/* A size does not fit the address space. */
+/* A size does not fit the address space, 2^21 cells a side, or a sum of 64 bits. */
 #define FIXPAIR_ERROR_OVERFLOW (-8)
 
 /* A table is too short, not increasing, or not positive. */
@@ -3146,7 +3146,8 @@ fixpair_status_t fixpair_halo_count(size_t *count,
  *      scratch        scratch_len bytes, see fixpair_halos_scratch
  *      exec           or NULL
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH; FIXPAIR_ERROR_LENGTH, also if there are more
- *          than halos_len; FIXPAIR_ERROR_HOOK, after which halos are undefined
+ *          than halos_len; FIXPAIR_ERROR_HOOK, after which halos are undefined, and so after FIXPAIR_ERROR_NOT_FINITE for velocities whose squares
+ *          no number holds
  * Cost: on one core in single precision 50 ns a particle of a simulation at z = 0
  */
 fixpair_status_t fixpair_halos_f64(struct fixpair_halo *halos,
@@ -3194,7 +3195,8 @@ fixpair_status_t fixpair_halos_f32(struct fixpair_halo *halos,
  *      scratch   scratch_len bytes, see fixpair_halos_scratch
  *      exec      or NULL
  * Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH, _TABLE for the map; FIXPAIR_ERROR_LENGTH, also if
- *          there are more than sums_len; FIXPAIR_ERROR_HOOK, after which sums are undefined
+ *          there are more than sums_len; FIXPAIR_ERROR_HOOK, after which sums are undefined, and so after FIXPAIR_ERROR_NOT_FINITE for velocities
+ *          whose squares no number holds
  * Cost: on one core in single precision 50 ns a particle of a simulation at z = 0
  */
 fixpair_status_t fixpair_halo_sums_f64(struct fixpair_halo_sums *sums,

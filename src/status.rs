@@ -21,7 +21,7 @@ pub enum Error {
     /// A brick is not a part of its mesh, its strides fold two elements onto one address, or its space,
     /// side or extent is not what the kernel needs.
     Brick = -7,
-    /// A size does not fit the address space.
+    /// A size does not fit the address space, 2^21 cells a side, or a sum of 64 bits.
     Overflow = -8,
     /// A table is too short, not strictly increasing in its first column, or not positive.
     Table = -9,
@@ -112,7 +112,7 @@ impl Error {
                 c"the mesh side is zero, odd, or has a factor other than 2, 3, 5, 7: choose another side"
             }
             Self::Brick => c"a brick does not fit: check its space, side, start, count and strides",
-            Self::Overflow => c"a size overflows: the mesh does not fit the address space",
+            Self::Overflow => c"a size is beyond the address space, 2^21 cells a side, or a sum of 64 bits: take less at a time",
             Self::Table => {
                 c"a table is invalid: use two or more rows, k strictly increasing, all values positive"
             }

@@ -7,7 +7,7 @@ import pytest
 
 import fixpair
 from fixpair import _arrays, native
-from helpers import BOX, address, numbers, scattered
+from samples import BOX, address, numbers, scattered
 
 
 def test_particles_are_where_the_array_has_them(dtype):

@@ -5,7 +5,7 @@ import pytest
 
 import fixpair
 from fixpair import native
-from helpers import BOX, scattered
+from samples import BOX, scattered
 
 
 @pytest.mark.parametrize("status", [status for status in native.Status if status != 0])

@@ -5,7 +5,7 @@ import pytest
 
 import fixpair
 from fixpair import Amplitude, Binning, Compensation, Fft, Multipole, Realisation, Second, Sums, Window, estimate
-from helpers import BOX, SEED, scattered, tolerance
+from samples import BOX, SEED, scattered, tolerance
 
 N = 16
 EDGES = estimate.edges_uniform(7)

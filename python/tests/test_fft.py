@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fixpair
-from helpers import BOX, numbers, tolerance
+from samples import BOX, numbers, tolerance
 
 scipy_fft = pytest.importorskip("scipy.fft")
 HOSTS = {"numpy": (np.fft.rfftn, np.fft.irfftn), "scipy": (scipy_fft.rfftn, scipy_fft.irfftn)}

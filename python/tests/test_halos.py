@@ -5,7 +5,7 @@ import pytest
 
 import fixpair
 from fixpair import OverdensityDefinition, halos
-from helpers import BOX
+from samples import BOX
 
 CENTRES = np.array([[50.0, 60.0, 70.0], [199.5, 100.0, 0.5]])
 

@@ -5,7 +5,7 @@ import pytest
 
 import fixpair
 from fixpair import Amplitude, Conditions, Fft, Order, Phase, Shape, Species, cosmology, initial
-from helpers import BOX, SEED, tolerance
+from samples import BOX, SEED, tolerance
 
 N = 12
 

@@ -5,7 +5,7 @@ import pytest
 
 import fixpair
 from fixpair import Amplitude, Brick, Nyquist, Phase, Realisation, Scheme, Space, noise
-from helpers import SEED, numbers
+from samples import SEED, numbers
 
 
 def bits(low, real, brick, realisation, table=None):

@@ -5,7 +5,7 @@ import pytest
 
 import fixpair
 from fixpair import Brick, Fft, Gravity, Space, Stepper, Window, cosmology, pm
-from helpers import BOX, numbers, scattered, tolerance
+from samples import BOX, numbers, scattered, tolerance
 
 N = 12
 

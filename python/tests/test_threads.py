@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import fixpair
-from helpers import BOX, scattered
+from samples import BOX, scattered
 
 
 def work(dtype):

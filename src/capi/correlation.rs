@@ -1,6 +1,5 @@
 //! Correlation function.
 
-use crate::within::Within;
 use core::ffi::c_void;
 
 use super::binning::{binning, fixpair_binning};
@@ -15,6 +14,7 @@ use crate::estimate::correlation::{
 use crate::real::Real;
 use crate::scratch::Layout;
 use crate::status::Result;
+use crate::within::Within;
 
 /// Scratch of fixpair_correlation_modes_*: n/2 + 1 double.
 ///

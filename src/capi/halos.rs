@@ -102,7 +102,8 @@ pub unsafe extern "C" fn fixpair_halo_count(
 ///      scratch        scratch_len bytes, see fixpair_halos_scratch
 ///      exec           or NULL
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH; FIXPAIR_ERROR_LENGTH, also if there are more
-///          than halos_len; FIXPAIR_ERROR_HOOK, after which halos are undefined
+///          than halos_len; FIXPAIR_ERROR_HOOK, after which halos are undefined, and so after FIXPAIR_ERROR_NOT_FINITE for velocities whose squares
+///          no number holds
 /// Cost: on one core in single precision 50 ns a particle of a simulation at z = 0
 ///
 /// # Safety
@@ -253,7 +254,8 @@ unsafe fn particles<'a, P: Places>(
 ///      scratch   scratch_len bytes, see fixpair_halos_scratch
 ///      exec      or NULL
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, _RANGE, _SCRATCH, _TABLE for the map; FIXPAIR_ERROR_LENGTH, also if
-///          there are more than sums_len; FIXPAIR_ERROR_HOOK, after which sums are undefined
+///          there are more than sums_len; FIXPAIR_ERROR_HOOK, after which sums are undefined, and so after FIXPAIR_ERROR_NOT_FINITE for velocities
+///          whose squares no number holds
 /// Cost: on one core in single precision 50 ns a particle of a simulation at z = 0
 ///
 /// # Safety

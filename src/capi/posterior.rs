@@ -1,6 +1,5 @@
 //! Fits and posteriors of the bias parameters.
 
-use crate::within::Within;
 use core::ffi::c_void;
 
 use super::border::Border;
@@ -13,6 +12,7 @@ use crate::variance::fit::{self, BiasFit};
 use crate::variance::likelihood::BiasLikelihood;
 use crate::variance::posterior::{self, Grid, Posterior};
 use crate::variance::{contours, levels};
+use crate::within::Within;
 
 /// b_g is free.
 pub const FIXPAIR_FREE_B_G: u32 = 1;
@@ -111,9 +111,7 @@ pub unsafe extern "C" fn fixpair_bias_posterior(
             check_parameters(free, parameters)?;
             let all = posterior::bias_posterior(likelihood, start, free, points, probability, scratch)?;
             *fit = all.fit;
-            for (posterior, from) in posteriors.iter_mut().zip(all.posterior) {
-                *posterior = from;
-            }
+            posteriors.copy(all.posterior.part(..parameters));
         }
         Ok(())
     })())
@@ -190,12 +188,8 @@ pub unsafe extern "C" fn fixpair_bias_grid(
             let points = border.read(points, parameters)?;
             check_parameters(free, parameters)?;
             let mut grid = Grid { range: [[0.0; 2]; 2], points: [1; 2] };
-            for (place, &range) in grid.range.iter_mut().zip(ranges) {
-                *place = range;
-            }
-            for (place, &points) in grid.points.iter_mut().zip(points) {
-                *place = points;
-            }
+            grid.range.part_mut(..parameters).copy(ranges);
+            grid.points.part_mut(..parameters).copy(points);
             posterior::bias_grid(chi_squared, likelihood, fixed, free, &grid)
         }
     })())

@@ -1,6 +1,5 @@
 //! Power spectrum.
 
-use crate::within::Within;
 use core::ffi::c_void;
 
 use super::binning::{binning, fixpair_binning};
@@ -15,6 +14,7 @@ use crate::pm::Window;
 use crate::real::Real;
 use crate::scratch::Layout;
 use crate::status::{Error, Result};
+use crate::within::Within;
 
 /// Modes are taken as they are.
 pub const FIXPAIR_COMPENSATION_NONE: i32 = 0;

@@ -24,7 +24,7 @@ pub const FIXPAIR_ERROR_NOT_FINITE: i32 = -5;
 pub const FIXPAIR_ERROR_MESH_SIZE: i32 = -6;
 /// A brick does not fit its mesh, its memory, or the function.
 pub const FIXPAIR_ERROR_BRICK: i32 = -7;
-/// A size does not fit the address space.
+/// A size does not fit the address space, 2^21 cells a side, or a sum of 64 bits.
 pub const FIXPAIR_ERROR_OVERFLOW: i32 = -8;
 /// A table is too short, not increasing, or not positive.
 pub const FIXPAIR_ERROR_TABLE: i32 = -9;

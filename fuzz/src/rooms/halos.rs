@@ -175,7 +175,7 @@ macro_rules! in_precision {
                             input.pointer(&halos), input.length(at_most), &mut count, of, of_len, &position,
                             if input.odd(8) { null() } else { &velocity }, box_size, n_min, mass, work, work_len, pointer(&exec)
                         ));
-                        before.check(status, &[FIXPAIR_ERROR_HOOK]);
+                        before.check(status, &[FIXPAIR_ERROR_HOOK, FIXPAIR_ERROR_NOT_FINITE]);
                         assert!(status != 0 || count <= at_most, "halos fit");
                     }
                     _ => {
@@ -187,7 +187,7 @@ macro_rules! in_precision {
                             if input.odd(8) { null() } else { &velocity }, box_size, n_min, input.pointer(&map), input.length(entries), work, work_len,
                             pointer(&exec)
                         ));
-                        before.check(status, &[FIXPAIR_ERROR_HOOK]);
+                        before.check(status, &[FIXPAIR_ERROR_HOOK, FIXPAIR_ERROR_NOT_FINITE]);
                         assert!(status != 0 || count <= at_most, "sums fit");
                     }
                 }

@@ -44,7 +44,7 @@ class BrickError(FixpairError, ValueError):
 
 
 class SizeError(FixpairError, OverflowError):
-    """A size does not fit the address space."""
+    """A size does not fit the address space, 2^21 cells a side, or a sum of 64 bits."""
 
 
 class TableError(FixpairError, ValueError):
