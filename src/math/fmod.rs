@@ -11,6 +11,11 @@ const SPARE: u32 = u64::BITS - BITS - 1;
 /// x - trunc(x/y) y, exactly, with the sign of x; NaN for x not finite, y = 0 or NaN.
 ///
 /// Division by hand, a few binary digits at a time.
+///
+/// # Example
+/// ```
+/// assert_eq!(fixpair::math::fmod(-7.5, 2.0), -1.5);
+/// ```
 #[must_use]
 pub fn fmod(x: f64, y: f64) -> f64 {
     let (size_x, size_y) = (x.abs(), y.abs());
