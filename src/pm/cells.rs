@@ -54,12 +54,18 @@ impl Cells {
         [self.stride[0], self.stride[1]]
     }
 
-    /// Offset of cell (i, j, k) after the first that a particle touches, in any layout and round any edge.
+    /// Offsets along each axis of the P cells from the first that a particle touches, in any layout and round any edge.
     #[inline(always)]
-    pub(super) fn offset(&self, first: [usize; 3], cell: [usize; 3]) -> usize {
-        // No count is 0 where a particle is inside.
-        let index = |axis: usize| (first[axis] + cell[axis]).checked_rem(self.count[axis]).unwrap_or(0);
-        (0..3).map(|axis| index(axis) * self.stride[axis]).sum()
+    pub(super) fn offsets<const P: usize>(&self, first: [usize; 3]) -> [[usize; P]; 3] {
+        [0, 1, 2].map(|axis| {
+            let mut index = first[axis];
+            debug_assert!(index < self.count[axis]);
+            core::array::from_fn(|_| {
+                let offset = index * self.stride[axis];
+                index = if index + 1 < self.count[axis] { index + 1 } else { 0 };
+                offset
+            })
+        })
     }
 }
 

@@ -240,12 +240,13 @@ impl<'a, T: Real, const M: usize> Meshes<'a, T, M> {
         x: &[T; P],
         y: &[T; P],
     ) -> [T; Q] {
+        let [along_x, along_y, along_z] = self.cells.offsets::<P>(first);
         let mut sum = [T::ZERO; Q];
         for i in 0..P {
             for j in 0..P {
-                let weight = x[i] * y[j];
+                let (weight, rows) = (x[i] * y[j], along_x[i] + along_y[j]);
                 for k in 0..P {
-                    sum[k] += weight * mesh.at(self.cells.offset(first, [i, j, k]));
+                    sum[k] += weight * mesh.at(rows + along_z[k]);
                 }
             }
         }

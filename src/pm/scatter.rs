@@ -145,11 +145,12 @@ unsafe fn add_cells<T: Real, const P: usize, const Q: usize>(
     y: &[T; P],
     z: &[T; Q],
 ) {
+    let [along_x, along_y, along_z] = cells.offsets::<P>(first);
     for i in 0..P {
         for j in 0..P {
             for k in 0..P {
                 // SAFETY: the offset of a cell of the mesh, this thread's alone (caller).
-                unsafe { *mesh.add(cells.offset(first, [i, j, k])) += x[i] * (y[j] * z[k]) };
+                unsafe { *mesh.add(along_x[i] + along_y[j] + along_z[k]) += x[i] * (y[j] * z[k]) };
             }
         }
     }
