@@ -58,7 +58,8 @@ with = $(filter default $(1),$(features))
 DEFINES := $(strip $(if $(call with,std),,FIXPAIR_NO_THREADS) $(if $(call with,linalg),,FIXPAIR_NO_LINALG))
 
 SOURCES := Makefile Cargo.toml Cargo.lock $(shell find src -name '*.rs')
-DOCUMENTS := README.md CHANGELOG.md CITATION.cff LICENSE-APACHE LICENSE-MIT $(wildcard docs/*.md)
+DOCUMENTS := README.md CHANGELOG.md CITATION.cff LICENSE-APACHE LICENSE-MIT
+PAGES := $(wildcard docs/*.md)
 CMAKE_FILES := fixpair-config.cmake fixpair-config-version.cmake fixpair-targets.cmake
 
 PKGCONFIGDIR := $(LIBDIR)/pkgconfig
@@ -67,7 +68,7 @@ DOCDIR := $(DATADIR)/doc/fixpair
 FORTRANDIR := $(DATADIR)/fixpair/fortran
 
 INSTALLED := $(addprefix $(LIBDIR)/,libfixpair.a $(REAL) $(SONAME) $(SHARED)) $(INCLUDEDIR)/fixpair.h $(PKGCONFIGDIR)/fixpair.pc \
-	$(addprefix $(CMAKEDIR)/,$(CMAKE_FILES)) $(addprefix $(DOCDIR)/,$(notdir $(DOCUMENTS))) $(FORTRANDIR)/fixpair.f90
+	$(addprefix $(CMAKEDIR)/,$(CMAKE_FILES)) $(addprefix $(DOCDIR)/,$(DOCUMENTS) $(PAGES)) $(FORTRANDIR)/fixpair.f90
 
 ifneq ($(filter-out $(PREFIX)/%,$(LIBDIR) $(INCLUDEDIR) $(DATADIR)),)
 $(error LIBDIR, INCLUDEDIR and DATADIR must be below PREFIX)
@@ -105,12 +106,13 @@ install: libraries
 	$(foreach file,$(CMAKE_FILES),$(FILL) packaging/$(file).in >$(DESTDIR)$(CMAKEDIR)/$(file) &&) \
 	    chmod 644 $(addprefix $(DESTDIR),$(PKGCONFIGDIR)/fixpair.pc $(addprefix $(CMAKEDIR)/,$(CMAKE_FILES)))
 	$(INSTALL) -m 644 $(DOCUMENTS) $(DESTDIR)$(DOCDIR)
+	$(INSTALL) -m 644 $(PAGES) $(DESTDIR)$(DOCDIR)/docs
 	$(INSTALL) -m 644 c-examples/fortran/fixpair.f90 $(DESTDIR)$(FORTRANDIR)
 
 # Folders that others use too stay.
 uninstall:
 	rm -f $(addprefix $(DESTDIR),$(INSTALLED))
-	-rmdir $(addprefix $(DESTDIR),$(CMAKEDIR) $(DOCDIR) $(FORTRANDIR) $(dir $(FORTRANDIR)))
+	-rmdir $(addprefix $(DESTDIR),$(CMAKEDIR) $(DOCDIR)/docs $(DOCDIR) $(FORTRANDIR) $(dir $(FORTRANDIR)))
 
 check-install: libraries
 	MAKE='$(MAKE)' LIBRARIES='$(BUILD)' packaging/check-install
