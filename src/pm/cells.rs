@@ -57,15 +57,16 @@ impl Cells {
     /// Offsets along each axis of the P cells from the first that a particle touches, in any layout and round any edge.
     #[inline(always)]
     pub(super) fn offsets<const P: usize>(&self, first: [usize; 3]) -> [[usize; P]; 3] {
-        [0, 1, 2].map(|axis| {
-            let mut index = first[axis];
-            debug_assert!(index < self.count[axis]);
+        let along = |mut index: usize, count: usize, stride: usize| {
+            debug_assert!(index < count);
             core::array::from_fn(|_| {
-                let offset = index * self.stride[axis];
-                index = if index + 1 < self.count[axis] { index + 1 } else { 0 };
+                let offset = index * stride;
+                index = if index + 1 < count { index + 1 } else { 0 };
                 offset
             })
-        })
+        };
+        let ([x, y, z], count, stride) = (first, self.count, self.stride);
+        [along(x, count[0], stride[0]), along(y, count[1], stride[1]), along(z, count[2], stride[2])]
     }
 }
 
