@@ -63,7 +63,8 @@ instrumented() {
     cargo rustc --locked --profile instruments --lib --crate-type staticlib --target "$platform" --target-dir "$target/$sanitizer" "$@"
 }
 
-on_this_platform() { rustc -vV | grep -qx "host: $platform"; }
+# Not grep -q, which may leave the pipe before all is written, a failure of the pipe.
+on_this_platform() { rustc -vV | grep -x "host: $platform" >/dev/null; }
 
 memcheck() {
   announce "memcheck: the library as it is shipped, every bit that decides something, every block"
