@@ -2899,7 +2899,7 @@ fixpair_status_t fixpair_evolve_scratch_f32(struct fixpair_layout *scratch,
  * The same bits on any number of threads. One process holds all particles; a host with slabs builds its own loop of fixpair_deposit_f64, its
  * transform, fixpair_forces_f64, fixpair_kick_f64 and fixpair_drift_f64, with the factors of fixpair_kick_factors and fixpair_drift_factors.
  *
- * In/Out: position  wrapped into [0, L)
+ * In/Out: position  wrapped into [0, L) by each step; a list of one scale factor moves none
  *      velocity  peculiar, a dx/dt, as fixpair_initial_conditions_f64 makes them
  *      epoch     where they are: positions at an entry of the list, velocities there too or in the middle of the step before
  * In:  gravity
