@@ -1,11 +1,12 @@
-"""docs/python.md runs, and prints what it says."""
+"""docs/python.md runs, and prints what it says; the Python of README.md runs."""
 
 import contextlib
 import io
 import re
 from pathlib import Path
 
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "python.md"
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "python.md"
 
 
 def test_the_page_prints_what_it_says():
@@ -23,3 +24,11 @@ def test_the_figures_of_the_page_are_there():
     for image in re.findall(r"!\[.*?\]\((.*?)\)", PAGE.read_text(encoding="utf-8")):
         size = (PAGE.parent / image).stat().st_size
         assert 10_000 < size < 150_000, f"{image}: {size} bytes"
+
+
+def test_the_python_of_the_readme_moves_particles():
+    (code,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.S)
+    names: dict = {}
+    exec(compile(code, "README.md", "exec"), names)
+    position = names["particles"]["pos"]
+    assert (position >= 0).all() and (position < 1000).all() and names["particles"]["vel"].any(axis=1).all()
