@@ -5,6 +5,7 @@
 #   make install        installs them; after `make` it needs no cargo, so that another user may run it
 #   make uninstall      removes what `make install` with the same variables and version put there
 #   make check-install  installs into target/, moves the tree, builds and runs packaging/consumers from it, and uninstalls
+#   make check-cinstall  the same of what cargo-c installs, for those who have it
 #   make abi            compares symbols, structs and constants with packaging/abi; FIXPAIR_BLESS=1 records additions
 #   make doxygen        the header as a manual, target/doxygen/html
 #
@@ -117,6 +118,9 @@ uninstall:
 check-install: libraries
 	MAKE='$(MAKE)' LIBRARIES='$(BUILD)' packaging/check-install
 
+check-cinstall:
+	packaging/check-cinstall
+
 abi:
 	$(CARGO) test --locked --test ffi abi::
 
@@ -124,5 +128,5 @@ doxygen:
 	mkdir -p target/doxygen
 	doxygen docs/Doxyfile
 
-.PHONY: libraries install uninstall check-install abi doxygen
+.PHONY: libraries install uninstall check-install check-cinstall abi doxygen
 .DELETE_ON_ERROR:

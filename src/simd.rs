@@ -1,4 +1,4 @@
-//! Which instructions this processor has, asked at run time and without std.
+//! Which instructions this processor has, asked at run time.
 
 /// The code paths that kernels come in. Each computes with the same structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,7 +10,8 @@ pub enum Simd {
 }
 
 impl Simd {
-    /// The best path of this processor. Costs a few microseconds on a virtual machine: ask once a kernel, not once a row.
+    /// The best path of this processor. With the feature `std`, whose standard library remembers the answer, it costs nothing; without, a few
+    /// microseconds on a virtual machine: ask once a kernel, not once a row.
     ///
     /// ```
     /// use fixpair::simd::Simd;
@@ -20,7 +21,11 @@ impl Simd {
     /// ```
     #[must_use]
     pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", feature = "std"))]
+        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+            return Self::Avx2;
+        }
+        #[cfg(all(target_arch = "x86_64", not(feature = "std")))]
         {
             use core::arch::x86_64::{__cpuid, __cpuid_count, _xgetbv};
             #[target_feature(enable = "xsave")]

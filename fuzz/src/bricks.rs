@@ -71,7 +71,8 @@ pub fn region(input: &mut Input) -> fixpair_brick {
     let mut ghosted = inner;
     if input.flag() {
         let shift = [0.0, 0.5, input.about_number(0.5)][input.few(3)];
-        let _ = call!(fixpair_brick_with_ghosts(&mut ghosted, &inner, 1 + input.choice(4), shift));
+        let _ =
+            call!(fixpair_brick_with_ghosts(&mut ghosted, &inner, 1 + input.choice(4).min(1 << 20), shift));
     }
     ghosted
 }

@@ -80,6 +80,11 @@ impl<T: Float> Cloud<T> {
         })
     }
 
+    /// Is it this cloud, all of it, that the library was shown?
+    pub fn shown(&self, x: *const T, length: usize) -> bool {
+        x == self.memory.pointer().cast_const() && length == self.count
+    }
+
     pub fn inside(&self, box_size: f64) -> bool {
         let inside = |x: T| x.to() >= 0.0 && x.to() < box_size;
         (0..self.count).all(|i| self.at(i).into_iter().all(inside))

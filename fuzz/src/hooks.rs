@@ -72,7 +72,9 @@ pub fn layout() -> Layout {
 /// Scratch as a query asked for it; nothing sensible where it was refused or asks for more than the targets use.
 pub fn scratch_for(input: &mut Input, status: i32, layout: Layout) -> Memory<u8> {
     let needed = if status == 0 && layout.size <= 1 << 21 { layout.size } else { 256 };
-    scratch(if input.odd(64) { needed.saturating_sub(1 + input.few(65)) } else { needed })
+    let memory = scratch(if input.odd(64) { needed.saturating_sub(1 + input.few(65)) } else { needed });
+    input.shown.push((memory.pointer(), memory.bytes()));
+    memory
 }
 
 macro_rules! built {
@@ -116,7 +118,7 @@ macro_rules! built {
 
             /// A transform of a small mesh, now and then with a member that is wrong.
             pub fn [<some_ $of>](input: &mut Input) -> [<fixpair_fft_ $r>] {
-                let mut fft = $of([8, 2, 4, 6, 10, 12][input.few(6)]);
+                let mut fft = $of(input.small_side());
                 match input.byte() % 64 {
                     58 => fft.struct_size = input.size(),
                     59 => fft.forward = None,

@@ -65,11 +65,15 @@ impl Rows {
     }
 }
 
+/// As they are or by A_s; sometimes by sigma_8, which is an integral.
+const NORMALISATIONS: [i32; 8] = [3, 3, 2, 3, 1, 3, 2, 3];
+
 /// A fit without rows, or rows of P(k) or T(k).
 pub fn linear(input: &mut Input, rows: &Rows) -> fixpair_linear {
     let source = [2, 0, 1, 3][input.few(4)];
     let source = if input.odd(32) { input.choice(4) } else { source };
-    let normalisation = if source == 0 && input.flag() { 0 } else { 1 + input.choice(3).min(1 << 20) };
+    let normalisation = if source == 0 && input.flag() { 0 } else { NORMALISATIONS[input.few(8)] };
+    let normalisation = if input.odd(32) { input.choice(4) } else { normalisation };
     let with = source < 2 || input.odd(32);
     let [k, value] = if with {
         [0, 1].map(|column| input.pointer(&rows.columns[column]).cast_const())
@@ -127,7 +131,7 @@ pub fn conditions(
     let mut of = of.values()[0];
     of.realisation = crate::rooms::meshes::realisation(input, 8);
     of.cosmology = cosmology(input);
-    if input.flag() {
+    if !input.odd(16) {
         of.linear = linear(input, table);
     }
     of.redshift = input.about_number(32.0);
@@ -135,7 +139,7 @@ pub fn conditions(
     of.f_nl = [0.0, 100.0, input.about_number(-100.0)][input.few(3)];
     of.g_nl = [0.0, 1e5, input.about_number(1e5)][input.few(3)];
     of.convention = input.choice(2);
-    of.order = 1 + input.choice(3).min(1 << 20);
+    of.order = if input.odd(16) { input.choice(5) } else { [2, 1, 2, 1, 2, 1, 2, 3][input.few(8)] };
     of.shape = input.choice(6);
     of.rows = input.pointer(rows);
     of.rows_len = input.length(rows.len());

@@ -239,8 +239,8 @@ unsafe fn add<T: Real>(
 /// In:  weights    of particle i at weights[i * weights_stride]; NULL, with a stride of 0, for equal weights
 ///      particles  how many
 ///      box_size   L
-/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive, no particles,
-///          weights that sum to 0, or weights with a stride of 0
+/// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive or whose volume
+///          no number holds, no particles, weights that sum to 0, or weights with a stride of 0
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated.

@@ -275,7 +275,7 @@ impl Cosmology {
 /// Or of photons at `t_cmb` (K) and `n_eff` massless neutrinos: (1 + (7/8) (4/11)^(4/3) N_eff) (4 sigma_SB/c^3) T^4/rho_crit.
 ///
 /// # Errors
-/// `NotFinite`; `Range` unless `t_cmb` and `h` are positive and `n_eff` is not negative.
+/// `NotFinite`; `Range` unless `t_cmb` and `h` are positive and `n_eff` is not negative, and for a density that no number holds.
 ///
 /// # Example
 /// ```
@@ -299,5 +299,6 @@ pub fn radiation_density(t_cmb: f64, n_eff: f64, h: f64) -> Result<f64> {
     let critical = 3.0 * hubble * hubble / (8.0 * core::f64::consts::PI * GRAVITY);
     let photons = 4.0 * STEFAN_BOLTZMANN / (LIGHT * LIGHT * LIGHT) * libm::pow(t_cmb, 4.0);
     let neutrinos = 0.875 * libm::pow(4.0 / 11.0, 4.0 / 3.0) * n_eff;
-    Ok((1.0 + neutrinos) * photons / critical)
+    let density = (1.0 + neutrinos) * photons / critical;
+    if density.is_finite() { Ok(density) } else { Err(Error::Range) }
 }

@@ -207,8 +207,8 @@ fn imaginary_part<T: Real>(f: &[T; 2], g: &[T; 2]) -> f64 {
 /// `weights`: one for each particle, or none for equal weights; `particles`: how many there are.
 ///
 /// # Errors
-/// `Length` for weights of another number than `particles`; `Range` for a box that is not positive, no particles, or weights that sum to 0;
-/// `NotFinite`.
+/// `Length` for weights of another number than `particles`; `Range` for a box that is not positive or whose volume no number holds, no particles, or weights that sum to
+/// 0;/// `NotFinite`.
 ///
 /// # Example
 /// ```
@@ -238,6 +238,9 @@ pub(crate) fn shot_noise_of(
         return Err(Error::Range);
     }
     let volume = box_size * box_size * box_size;
+    if !volume.is_finite() {
+        return Err(Error::Range);
+    }
     let Some(weights) = weights else { return Ok(volume / particles as f64) };
     let (mut sum, mut squares) = (0.0, 0.0);
     for weight in weights {

@@ -105,6 +105,18 @@ pub struct FirstOrder<'a> {
 
 impl<'a> FirstOrder<'a> {
     /// From T_s/T_m and V_s/T_m (see [`crate::cosmology::species`]), which are overwritten.
+    ///
+    /// # Example
+    /// ```
+    /// use fixpair::initial::displacements::{FirstOrder, Motion};
+    /// # let motion = Motion {
+    /// #     box_size: 1.0, velocity: 1.0, rates: [1.0, 2.0], second_order: -3.0 / 7.0, third_order: [0.0; 3], third_rates: [3.0; 3],
+    /// # };
+    ///
+    /// let (mut density, mut velocity) = ([1.0; 4], [1.0; 4]); // a species like matter, in a universe of f1 = 1
+    /// let _ = FirstOrder::new(&mut density, &mut velocity, &motion);
+    /// assert_eq!((density, velocity), ([1.0; 4], [0.0; 4])); // all of it is in the first field
+    /// ```
     pub fn new(density: &'a mut [f64], velocity: &'a mut [f64], motion: &Motion) -> Self {
         let [f1, f2] = motion.rates;
         for (density, velocity) in density.iter_mut().zip(velocity.iter_mut()) {
@@ -186,6 +198,32 @@ pub type Place<'a, T> = dyn FnMut(usize, &[T], Option<&[T]>) -> Result<()> + 'a;
 /// fails the rest is done all the same, for transforms may be collective.
 ///
 /// Cost: 3 transforms at first order, 6 with a species or of higher order, and for the sources at second order 7, or 8 of `fine`; at third 192.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::displacements::{Motion, Order, Work, displacements};
+///
+/// let mut delta = vec![0.0; fft.length()];
+/// delta[2] = 0.01; // the mode (0, 0, 1) and its conjugate: delta(z) = 0.02 cos(2 pi z/L)
+/// let rates = ([1.0, 2.0], [3.0; 3]); // of an Einstein-de Sitter universe
+/// let third_order = [-1.0 / 3.0, 5.0 / 21.0, 1.0 / 7.0];
+/// let motion =
+///     Motion { box_size: 1.0, velocity: 1.0, rates: rates.0, second_order: -3.0 / 7.0, third_order, third_rates: rates.1 };
+/// let (mut source, mut largest) = (vec![0.0; fft.length()], [0.0_f64; 3]);
+/// let work = Work { source: &mut source, rest: &mut [], table: &mut [] };
+/// let mut place = |axis: usize, first: &[f64], _: Option<&[f64]>| {
+///     largest[axis] = first.iter().fold(0.0, |largest, psi| psi.abs().max(largest));
+///     Ok(())
+/// };
+/// displacements(&mut delta, Order::First, &motion, None, &mut fft, None, work, &mut place, &Serial)?;
+/// assert!(largest[0] == 0.0 && (largest[2] - 0.02 / std::f64::consts::TAU).abs() < 1e-12); // delta L/(2 pi)
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn displacements<T: Real>(
     density: &mut [T],
     order: Order,

@@ -67,6 +67,28 @@ pub fn shape_rest<T: Real>(fft: &dyn Fft3<T>, work: &dyn Fft3<T>) -> usize {
 /// Those of the stages.
 ///
 /// Cost: two passes, and with f_NL or g_NL those of [`add_local`] or [`super::shape::add_quadratic`].
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::cosmology::mode_table_length;
+/// use fixpair::initial::{png::Local, realise::{Field, FieldWork, linear_density}};
+/// use fixpair::noise::{Amplitude, Realisation};
+///
+/// let (amplitude, transfer) = (vec![1e-5; mode_table_length(8)?], vec![1e4; mode_table_length(8)?]);
+/// let realisation = Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) };
+/// let local = Local { f_nl: 0.0, g_nl: 0.0 };
+/// let field = Field { realisation, potential_amplitude: &amplitude, local, shape: &[], n_s: 0.96, transfer: &transfer };
+/// let (mut density, mut mesh) = (vec![0.0_f64; fft.length()], vec![0.0; fft.length()]);
+/// let work = FieldWork { mesh: &mut mesh, rest: &mut [], table: &mut [], partial: &mut [[0.0]; 64] };
+/// linear_density(&mut density, &field, &mut fft, None, work, &Serial)?;
+/// assert!((density[2].hypot(density[3]) - 0.1).abs() < 1e-12); // fixed: alpha sqrt(P_Phi/V), of any seed
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn linear_density<T: Real>(
     density: &mut [T],
     field: &Field<'_>,

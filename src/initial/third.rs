@@ -100,6 +100,26 @@ pub fn second_order_exact<T: Real>(
 /// As [`second_order_exact`].
 ///
 /// Cost: 136 transforms, which with the passes between them take as long as about 200.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::{shifted::half_cells_length, third::third_order_sources};
+///
+/// let mut delta = vec![0.0; fft.length()];
+/// delta[2] = 0.01; // the mode (0, 0, 1) of a density contrast
+/// let second = vec![0.0; fft.length()]; // second_order_exact gives none for it
+/// let mut out: [_; 5] = core::array::from_fn(|_| vec![1.0; fft.length()]);
+/// let mut meshes: [_; 12] = core::array::from_fn(|_| vec![0.0; fft.length()]);
+/// let (out, meshes) = (out.each_mut().map(|mesh| &mut mesh[..]), meshes.each_mut().map(|mesh| &mut mesh[..]));
+/// let mut table = vec![[0.0; 2]; half_cells_length(8)];
+/// third_order_sources(out, &delta, &second, &mut fft, meshes, &mut table, &Serial)?; // nor is there any of the third order
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn third_order_sources<T: Real>(
     mut out: [&mut [T]; 5],
     density: &[T],
@@ -170,6 +190,23 @@ pub fn third_order_scratch<T: Real>(fft: &dyn Fft3<T>) -> Result<Layout> {
 /// `Range` for an axis above 2, `NotFinite` for the scale, `Length`, or what `fft` returns.
 ///
 /// Cost: three passes and one transform.
+///
+/// # Example
+/// ```
+/// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
+/// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
+/// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
+/// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
+/// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+/// use fixpair::initial::third::transverse_displacement;
+///
+/// let (mut x, zero) = (vec![0.0; fft.length()], vec![0.0; fft.length()]);
+/// x[2] = 0.5; // C = (cos 2 pi z, 0, 0)
+/// let mut y = vec![0.0_f64; fft.length()];
+/// transverse_displacement(&mut y, [&x, &zero, &zero], 1, 1.0, &mut fft, &Serial)?;
+/// assert!((y[2] + 1.0).abs() < 1e-12 && y[0].abs() < 1e-12); // along y: -sin 2 pi z, at z = 1/4 and 0
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn transverse_displacement<T: Real>(
     out: &mut [T],
     curl: [&[T]; 3],

@@ -287,12 +287,11 @@ fn steps(scale_factors: &mut [f64], from: f64, to: f64, at: impl Fn(f64) -> f64)
         return Err(Error::Range);
     }
     let last = scale_factors.len().checked_sub(1).filter(|&last| last > 0).ok_or(Error::Length)?;
+    let mut reached = from;
     for (i, a) in scale_factors.iter_mut().enumerate() {
-        *a = match i {
-            0 => from,
-            i if i == last => to,
-            i => at(i as f64 / last as f64),
-        };
+        // By rounding a step could lead back, or beyond the end, where the ends are neighbours.
+        reached = if i == last { to } else { at(i as f64 / last as f64).max(reached).min(to) };
+        *a = if i == 0 { from } else { reached };
     }
     Ok(())
 }

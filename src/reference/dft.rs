@@ -18,16 +18,24 @@ fn axis(n: usize, sign: f64, stride: usize, cube: &mut [Complex]) {
         })
         .collect();
     let mut line = vec![[0.0; 2]; n];
-    for first in (0..cube.len()).filter(|i| (i / stride).is_multiple_of(n)) {
-        for (k, sum) in line.iter_mut().enumerate() {
-            *sum = [0.0; 2];
-            for j in 0..n {
-                let (x, w) = (cube[first + j * stride], roots[j * k % n]);
+    // Lines begin at the first `stride` elements of each block.
+    for first in (0..cube.len()).step_by(n * stride).flat_map(|block| block..block + stride) {
+        for (j, x) in line.iter_mut().enumerate() {
+            *x = cube[first + j * stride];
+        }
+        for k in 0..n {
+            let mut sum = [0.0; 2];
+            // jk modulo n.
+            let mut turn = 0;
+            for x in &line {
+                let w = roots[turn];
                 sum[0] += x[0] * w[0] - x[1] * w[1];
                 sum[1] += x[0] * w[1] + x[1] * w[0];
+                turn += k;
+                if turn >= n {
+                    turn -= n;
+                }
             }
-        }
-        for (k, &sum) in line.iter().enumerate() {
             cube[first + k * stride] = sum;
         }
     }

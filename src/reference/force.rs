@@ -35,31 +35,32 @@ pub(crate) fn shape(law: &ForceLaw, k: [f64; 3], h: f64) -> f64 {
 
 /// The three components of the force, and the potential, on the n^3 cells (z innermost) of a box of side `box_size`, of masses in cells.
 pub(crate) fn fields(n: usize, box_size: f64, masses: &[f64], law: &ForceLaw) -> [Vec<f64>; 4] {
+    core::array::from_fn(|which| field(which, n, box_size, masses, law))
+}
+
+/// One of the four.
+pub(crate) fn field(which: usize, n: usize, box_size: f64, masses: &[f64], law: &ForceLaw) -> Vec<f64> {
     let mass: f64 = masses.iter().sum();
     let h = box_size / n as f64;
     let modes = dft::forward(n, masses);
-    core::array::from_fn(|field| {
-        let transformed: Vec<dft::Complex> = (0..n * n * n)
-            .map(|at| {
-                let number = [at / (n * n), at / n % n, at % n].map(|i| Brick::mode(n, i));
-                if number == [0; 3] || number.iter().any(|m| m.unsigned_abs() as usize == n / 2) {
-                    return [0.0; 2];
-                }
-                let k = number.map(|m| 2.0 * PI * m as f64 / box_size);
-                let along = k.map(|k| derivatives(law, k, h));
-                let [re, im] = modes[at].map(|part| {
-                    -part / mass * shape(law, k, h)
-                        / along.iter().map(|&(_, laplacian)| laplacian).sum::<f64>()
-                });
-                match field {
-                    // - i K (re + i im)
-                    0..3 => [along[field].0 * im, -along[field].0 * re],
-                    _ => [re, im],
-                }
-            })
-            .collect();
-        dft::inverse(n, &transformed).into_iter().map(|[re, _]| re).collect()
-    })
+    let transformed: Vec<dft::Complex> = (0..n * n * n)
+        .map(|at| {
+            let number = [at / (n * n), at / n % n, at % n].map(|i| Brick::mode(n, i));
+            if number == [0; 3] || number.iter().any(|m| m.unsigned_abs() as usize == n / 2) {
+                return [0.0; 2];
+            }
+            let k = number.map(|m| 2.0 * PI * m as f64 / box_size);
+            let along = k.map(|k| derivatives(law, k, h));
+            let laplacian: f64 = along.iter().map(|&(_, laplacian)| laplacian).sum();
+            let [re, im] = modes[at].map(|part| -part / mass * shape(law, k, h) / laplacian);
+            match which {
+                // - i K (re + i im)
+                0..3 => [along[which].0 * im, -along[which].0 * re],
+                _ => [re, im],
+            }
+        })
+        .collect();
+    dft::inverse(n, &transformed).into_iter().map(|[re, _]| re).collect()
 }
 
 /// The pull of a point at the origin of a periodic box of side 1, 1/r^2 near it, on a point at r, with the uniform background that keeps

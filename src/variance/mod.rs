@@ -22,6 +22,7 @@ pub mod ensemble;
 pub mod fit;
 pub mod levels;
 pub mod likelihood;
+mod locate;
 pub mod matched;
 pub mod models;
 pub mod pairs;

@@ -7,21 +7,13 @@ use core::num::NonZero;
 
 use super::bias::Bias;
 use super::check::{finite, result, same_length};
-use super::fit::{BiasFit, Free, errors, fit_bias, minima};
+use super::fit::{BiasFit, Free};
 use super::likelihood::BiasLikelihood;
+use super::locate::{at, locate};
 use crate::math::sqrt;
 use crate::scratch::{Arena, Layout};
 use crate::status::{Error, Result};
 use crate::within::Within;
-
-/// chi^2 above the least at which a range ends: a density of exp(-12.5).
-const REACH: f64 = 25.0;
-/// Places on an edge or side that are tried to find where it is reached.
-const PLACES: usize = 65;
-/// How often a range may grow, by a quarter each time.
-const GROWTHS: usize = 100;
-/// How often a search may find a lower place than the fit it began with.
-const ATTEMPTS: usize = 5;
 
 /// Uniform grids of one or two parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,23 +46,25 @@ impl Grid {
     }
 }
 
-/// The i-th of so many values from the first to the last, which are there to the bit.
-#[inline]
-fn at([low, high]: [f64; 2], points: usize, i: usize) -> f64 {
-    if i == 0 {
-        low
-    } else if i == points - 1 {
-        high
-    } else {
-        low + (high - low) * (i as f64 / (points - 1) as f64)
-    }
-}
-
 /// Where the free parameters' posterior is: a range of each, in the order b_g, p, f_NL, beyond which the density is below exp(-12.5) of its peak.
 ///
 /// # Errors
 /// As [`fit_bias`]; `Length` unless there is a range for each free parameter; `Convergence` if the posterior does not end anywhere, as that of f_NL where b_g = p cannot be
 /// excluded.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::{bias::*, fit::FREE_B_G, likelihood::*, posterior::bias_range};
+///
+/// let spectra = Spectra { power: &[8e4, 4e4, 2e4], linear: &[2e4, 1e4, 5e3], alpha: &[100.0, 1000.0, 4000.0] };
+/// let mut likelihood = BiasLikelihood::EMPTY;
+/// likelihood.add(Spectrum::HaloHalo, spectra, &[900.0, 200.0, 50.0])?; // P = 4 P_lin: b_g = 2
+/// let fixed = Bias { b_g: 1.5, p: 1.0, f_nl: 0.0, delta_c: 1.686 };
+/// let mut ranges = [[0.0; 2]];
+/// bias_range(&mut ranges, &likelihood, &fixed, FREE_B_G)?;
+/// assert!(ranges[0][0] < 2.0 && 2.0 < ranges[0][1]);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bias_range(
     ranges: &mut [[f64; 2]],
     likelihood: &BiasLikelihood,
@@ -84,127 +78,6 @@ pub fn bias_range(
     Ok(())
 }
 
-/// The fit and the range. Where the search for the range meets a place lower than the fit, both are done again from there.
-fn locate(likelihood: &BiasLikelihood, start: &Bias, mask: u32) -> Result<(BiasFit, [[f64; 2]; 2])> {
-    let free = Free::new(mask)?;
-    let mut from = *start;
-    for _ in 0..ATTEMPTS {
-        let fit = fit_bias(likelihood, &from, mask)?;
-        let (range, lowest) = range(likelihood, &from, &fit, &free)?;
-        if lowest.chi_squared >= fit.chi_squared - 1e-9 * (1.0 + fit.chi_squared) {
-            return Ok((fit, range));
-        }
-        from = lowest.place;
-    }
-    Err(Error::Convergence)
-}
-
-/// The lowest place of a search.
-#[derive(Clone, Copy)]
-struct Lowest {
-    chi_squared: f64,
-    place: Bias,
-}
-
-/// Where the chi^2 of a range is looked at.
-struct Scan<'a> {
-    likelihood: &'a BiasLikelihood,
-    fixed: Bias,
-    free: &'a Free,
-    /// Places on the other axis.
-    places: usize,
-    lowest: Lowest,
-}
-
-impl Scan<'_> {
-    /// The least chi^2 where parameter `axis` has one value.
-    fn across(&mut self, range: &[[f64; 2]; 2], axis: usize, value: f64) -> f64 {
-        let mut least = f64::INFINITY;
-        let other = (axis + 1) % 2;
-        for i in 0..self.places {
-            let mut values = [value; 2];
-            values[other] = at(range[other], self.places, i);
-            let place = self.free.with(&self.fixed, values);
-            let chi_squared = self.likelihood.at(&place);
-            least = least.min(chi_squared);
-            if chi_squared < self.lowest.chi_squared {
-                self.lowest = Lowest { chi_squared, place };
-            }
-        }
-        least
-    }
-}
-
-/// The range, and the lowest place that was seen on the way.
-fn range(
-    likelihood: &BiasLikelihood,
-    start: &Bias,
-    fit: &BiasFit,
-    free: &Free,
-) -> Result<([[f64; 2]; 2], Lowest)> {
-    let count = free.numbers().len();
-    let floor = |axis: usize| if free.numbers()[axis] == 0 { 0.0 } else { f64::NEG_INFINITY };
-    // Where b_g = p all f_NL are the same: a ridge without end, too narrow to be met on an edge.
-    let ridge = free.with(&fit.value, [fit.value.p, 0.0]);
-    if free.numbers() == [0, 2] && ridge.b_g > 0.0 && likelihood.at(&ridge) < fit.chi_squared + REACH {
-        return Err(Error::Convergence);
-    }
-    // All valleys that are deep enough.
-    let mut range = [[f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]];
-    minima(likelihood, start, free, |place, chi_squared| {
-        let Ok(errors) = errors(likelihood, place, free) else { return };
-        if chi_squared < fit.chi_squared + REACH {
-            for (axis, (centre, error)) in free.of(place).into_iter().zip(errors).enumerate() {
-                range[axis] =
-                    [range[axis][0].min(centre - 5.0 * error), range[axis][1].max(centre + 5.0 * error)];
-            }
-        }
-    })?;
-    for (axis, range) in range.iter_mut().enumerate().take(count) {
-        range[0] = range[0].max(floor(axis));
-    }
-    let lowest = Lowest { chi_squared: fit.chi_squared, place: fit.value };
-    let places = if count == 2 { PLACES } else { 1 };
-    let mut scan = Scan { likelihood, fixed: fit.value, free, places, lowest };
-    // Edges move out until the density has vanished on all of them.
-    for growth in 0.. {
-        let mut grown = false;
-        for axis in 0..count {
-            for end in 0..2 {
-                let edge = range[axis][end];
-                let least = scan.across(&range, axis, edge);
-                if least < scan.lowest.chi_squared + REACH && edge > floor(axis) {
-                    let step = 0.25 * (range[axis][1] - range[axis][0]);
-                    range[axis][end] = if end == 0 { (edge - step).max(floor(axis)) } else { edge + step };
-                    grown = true;
-                }
-            }
-        }
-        if !grown {
-            break;
-        }
-        if growth == GROWTHS {
-            return Err(Error::Convergence);
-        }
-    }
-    // Then in, to where it has just vanished.
-    for _ in 0..2 {
-        let before = range;
-        for (axis, &side) in before.iter().enumerate().take(count) {
-            let least: [f64; PLACES] =
-                core::array::from_fn(|i| scan.across(&before, axis, at(side, PLACES, i)));
-            let limit = scan.lowest.chi_squared + REACH;
-            let inside = |i: &usize| least[*i] < limit;
-            let first = (0..PLACES).find(inside).unwrap_or(0);
-            let last = (0..PLACES).rev().find(inside).unwrap_or(PLACES - 1);
-            let ends = [first.saturating_sub(1), (last + 1).min(PLACES - 1)];
-            range.put(axis, ends.map(|i| at(side, PLACES, i)));
-        }
-    }
-    finite(range.part(..count).as_flattened()).map_err(|_| Error::Convergence)?;
-    Ok((range, scan.lowest))
-}
-
 /// chi^2 on a grid (Eq. chi2), whose marginals and contours the functions below make.
 ///
 /// `fixed`: the parameters that are not free.
@@ -212,6 +85,20 @@ fn range(
 /// # Errors
 /// `Choice` for a set of parameters that [`fit_bias`] does not take, `Length` unless there is a place for each point, `NotFinite`, `Range` for a range that is empty, fewer than two points, or a
 /// chi^2 that overflows.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::{bias::*, fit::FREE_B_G, likelihood::*, posterior::{Grid, bias_grid}};
+///
+/// let spectra = Spectra { power: &[8e4, 4e4, 2e4], linear: &[2e4, 1e4, 5e3], alpha: &[100.0, 1000.0, 4000.0] };
+/// let mut likelihood = BiasLikelihood::EMPTY;
+/// likelihood.add(Spectrum::HaloHalo, spectra, &[900.0, 200.0, 50.0])?; // P = 4 P_lin: b_g = 2
+/// let fixed = Bias { b_g: 1.5, p: 1.0, f_nl: 0.0, delta_c: 1.686 };
+/// let mut chi_squared = [0.0; 3];
+/// bias_grid(&mut chi_squared, &likelihood, &fixed, FREE_B_G, &Grid { range: [[1.9, 2.1], [0.0; 2]], points: [3, 1] })?;
+/// assert!(chi_squared[1] < 1e-12 && chi_squared[0] > 1.0 && chi_squared[2] > 1.0);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bias_grid(
     out: &mut [f64],
     likelihood: &BiasLikelihood,
@@ -239,6 +126,16 @@ const STEPS: core::ops::RangeInclusive<f64> = 1e-280..=1e280;
 ///
 /// # Errors
 /// `Length` for arrays that do not fit, `NotFinite`, `Range` for an axis of one point, or a range that is empty or too extreme.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::posterior::marginal;
+///
+/// let mut density = [0.0; 5];
+/// marginal(&mut density, &[36.0, 9.0, 0.0, 9.0, 36.0], [5, 1], 0, [-6.0, 6.0])?; // chi^2 = x^2, in steps of 3
+/// assert!((3.0 * density.iter().sum::<f64>() - 1.0).abs() < 1e-7);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn marginal(
     out: &mut [f64],
     chi_squared: &[f64],
@@ -312,6 +209,16 @@ pub struct Posterior {
 /// # Errors
 /// `Length` for fewer than three points, `NotFinite`, `Range` for an empty range, negative densities, none above zero, a probability outside (0, 1), or
 /// numbers too extreme.
+///
+/// # Example
+/// ```
+/// use fixpair::variance::posterior::read_posterior;
+///
+/// let normal: Vec<f64> = (0..=200).map(|i| (-0.5 * (0.05 * f64::from(i) - 5.0).powi(2)).exp()).collect();
+/// let read = read_posterior(&normal, [-5.0, 5.0], 0.6827)?;
+/// assert!(read.peak.abs() < 1e-9 && (read.deviation - 1.0).abs() < 1e-4 && (read.half_width - 1.0).abs() < 2e-3);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn read_posterior(density: &[f64], range: [f64; 2], probability: f64) -> Result<Posterior> {
     finite(density)?;
     finite(&[range[0], range[1], probability])?;
@@ -397,6 +304,14 @@ pub const POINTS: core::ops::RangeInclusive<usize> = 16..=8192;
 ///
 /// # Errors
 /// `Range` for points outside [`POINTS`].
+///
+/// # Example
+/// ```
+/// use fixpair::variance::posterior::bias_posterior_scratch;
+///
+/// assert_eq!(bias_posterior_scratch(128)?.size, 16 * 128);
+/// # Ok::<(), fixpair::status::Error>(())
+/// ```
 pub fn bias_posterior_scratch(points: usize) -> Result<Layout> {
     if !POINTS.contains(&points) {
         return Err(Error::Range);

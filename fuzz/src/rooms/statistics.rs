@@ -167,6 +167,10 @@ fn scatter(input: &mut Input) {
         2 => call!(fixpair_sigma_suppressed(to, &left, wave, spectrum, number, declared, noise)),
         3 => {
             let edges = some_edges(input, 5);
+            // Sound as far as 2^28, and then seconds long.
+            if edges.values().iter().any(|edge| (1 << 12..=1 << 28).contains(edge)) {
+                return;
+            }
             let counts = Memory::new(edges.len().saturating_sub(1), |_| 7_u64);
             let before = Before::of(&[&counts]);
             let status = call!(fixpair_lattice_modes(

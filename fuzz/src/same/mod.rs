@@ -10,7 +10,7 @@ pub mod statistics;
 pub mod transform;
 
 /// Are both sides the same but for so much?
-fn close(found: f64, expected: f64, tolerance: f64, what: &str) {
+fn close(found: f64, expected: f64, tolerance: f64, what: impl core::fmt::Display) {
     assert!(
         (found - expected).abs() <= tolerance,
         "{what}: {found:e} instead of {expected:e}, tolerance {tolerance:e}"

@@ -10,9 +10,11 @@ use crate::same::close;
 
 pub fn run(data: &[u8]) {
     let input = &mut Input::new(data);
-    let n = [8, 2, 4, 6, 10, 12][input.few(6)];
+    let n = input.small_side();
     let [amplitude, phase, nyquist, selection, scheme] = [3, 2, 2, 2, 3].map(|count| input.few(count));
-    // The twin of N-GenIC's scheme knows seeds of 31 bits only.
+    // The twin of N-GenIC's scheme makes two generators a column.
+    let n = if scheme > 0 { n.min(6) } else { n };
+    // It knows seeds of 31 bits only.
     let seeds = if scheme > 0 { (1 << 31) - 1 } else { u64::MAX };
     let choice = Realisation {
         seed: input.word() & seeds,
@@ -61,13 +63,15 @@ pub fn run(data: &[u8]) {
         let at = 2 * (a * brick.stride[0] + b * brick.stride[1] + c * brick.stride[2]);
         let [i, j, l] = [a + brick.start[0], b + brick.start[1], c + brick.start[2]];
         let found = [memory.values()[at], memory.values()[at + 1]];
-        let what = format!("mode {:?} of {n}, {choice:?}", [i, j, l]);
+        let same = |part: usize, expected: f64, tolerance: f64| {
+            close(found[part], expected, tolerance, format_args!("mode {:?} of {n}, {choice:?}", [i, j, l]));
+        };
         match &slow {
             // The same uniforms; only the product of modulus and phase may be rounded otherwise.
             Some(modes) => {
                 let expected = modes[(i * n + j) * (n / 2 + 1) + l];
                 for part in 0..2 {
-                    close(found[part], expected[part], 2.0 * f64::EPSILON * expected[part].abs(), &what);
+                    same(part, expected[part], 2.0 * f64::EPSILON * expected[part].abs());
                 }
             }
             None => {
@@ -78,7 +82,7 @@ pub fn run(data: &[u8]) {
                 // is a cosine, possibly small, times at most sqrt(2 * 53 ln 2) = 8.6.
                 let scale = if expected[1] == 0.0 { 8.6 } else { expected[0].hypot(expected[1]) };
                 for part in 0..2 {
-                    close(found[part], expected[part], 1.5e-15 * scale, &what);
+                    same(part, expected[part], 1.5e-15 * scale);
                 }
             }
         }

@@ -37,7 +37,7 @@ macro_rules! in_precision {
     ($r:ident) => {
         pastey::paste! {
             fn [<in_ $r>](input: &mut Input) {
-                let n = [4, 6, 8, 10][input.few(4)];
+                let n = [4, 6, 4, 4, 8, 4, 6, 10][input.few(8)];
                 let (which, shift, count) = (input.few(4), [0.0, 0.5, 0.25][input.few(3)], input.few(10));
                 let (window, code) = (WINDOWS[which], which as i32 + 1);
                 let all = places(input, count, n);

@@ -37,7 +37,7 @@ fn compensation(input: &mut Input) -> (Compensation, i32) {
 
 pub fn run(data: &[u8]) {
     let input = &mut Input::new(data);
-    let n = [4, 2, 6, 8][input.few(4)];
+    let n = [4, 2, 4, 6, 4, 2, 4, 8][input.few(8)];
     let mut edge = input.few(4) as u64;
     let edges = Memory::new(2 + input.few(5), |_| {
         edge += 1 + input.few(12) as u64;

@@ -40,6 +40,9 @@ fn radiation_is_that_of_the_embedded_spectrum() {
     assert!(off(radiation_density(2.7255, 3.046, 0.7).unwrap(), 8.538_169e-5) < 2e-4);
     assert_eq!(radiation_density(2.7255, -1.0, 0.7), Err(Error::Range));
     assert_eq!(radiation_density(f64::NAN, 3.0, 0.7), Err(Error::NotFinite));
+    // T^4 overflows, and h^2 is zero.
+    assert_eq!(radiation_density(1e300, 3.0, 0.7), Err(Error::Range));
+    assert_eq!(radiation_density(2.7, 3.0, 1e-300), Err(Error::Range));
 }
 
 #[test]

@@ -141,6 +141,19 @@ fn lists_of_steps_begin_and_end_exactly() {
         close(ratios[i], 33_f64.powf(1.0 / 7.0), 1e-14);
         close(widths[i], 32.0 / 33.0 / 7.0, 1e-13);
     }
+    // Ends that are neighbours, where a logarithm and back is off by more than lies between them, and the ends of all numbers.
+    let ends = [
+        (0.001_250_636_489_843_252_2, 0.001_250_636_489_843_253),
+        (5.576_475_516_412_832, 5.576_475_516_412_833),
+        (5e-324, 1e-323),
+        (5e-324, f64::MAX),
+    ];
+    for (from, to) in ends {
+        for steps in [linear_steps, logarithmic_steps] {
+            steps(&mut linear, from, to).unwrap();
+            assert!(linear.is_sorted() && (linear[0], linear[7]) == (from, to), "{linear:?}");
+        }
+    }
     assert_eq!(linear_steps(&mut linear[..1], 0.1, 1.0), Err(Error::Length));
     assert_eq!(linear_steps(&mut linear, 1.0, 1.0), Err(Error::Range));
     assert_eq!(logarithmic_steps(&mut linear, 0.0, 1.0), Err(Error::Range));
