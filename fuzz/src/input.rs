@@ -178,7 +178,7 @@ impl<'a> Input<'a> {
         let kind = self.byte() % 96;
         let shown = match kind {
             93 => core::ptr::null_mut(),
-            94 if size_of::<T>() > 1 && of.len() > 0 => own.wrapping_byte_add(1),
+            94 if size_of::<T>() > 1 && !of.is_empty() => own.wrapping_byte_add(1),
             // Outputs may lead to scratch, but scratch to no output: with a declared length of zero that is none, and scratch is written.
             95 if size_of::<T>() > 1 => {
                 let place = self.few(self.shown.len().max(1));

@@ -76,13 +76,13 @@ pub fn shape_rest<T: Real>(fft: &dyn Fft3<T>, work: &dyn Fft3<T>) -> usize {
 /// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
 /// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
 /// use fixpair::cosmology::mode_table_length;
-/// use fixpair::initial::{png::Local, realise::{Field, FieldWork, linear_density}};
+/// use fixpair::initial::{png::Local, realise::{Field, FieldWork, linear_density}, shape::Shape};
 /// use fixpair::noise::{Amplitude, Realisation};
 ///
 /// let (amplitude, transfer) = (vec![1e-5; mode_table_length(8)?], vec![1e4; mode_table_length(8)?]);
 /// let realisation = Realisation { amplitude: Amplitude::Fixed, ..Realisation::new(1) };
-/// let local = Local { f_nl: 0.0, g_nl: 0.0 };
-/// let field = Field { realisation, potential_amplitude: &amplitude, local, shape: &[], n_s: 0.96, transfer: &transfer };
+/// let (local, shape) = (Local { f_nl: 0.0, g_nl: 0.0 }, Shape::Local.rows());
+/// let field = Field { realisation, potential_amplitude: &amplitude, local, shape, n_s: 0.96, transfer: &transfer };
 /// let (mut density, mut mesh) = (vec![0.0_f64; fft.length()], vec![0.0; fft.length()]);
 /// let work = FieldWork { mesh: &mut mesh, rest: &mut [], table: &mut [], partial: &mut [[0.0]; 64] };
 /// linear_density(&mut density, &field, &mut fft, None, work, &Serial)?;
