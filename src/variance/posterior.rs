@@ -49,7 +49,7 @@ impl Grid {
 /// Where the free parameters' posterior is: a range of each, in the order b_g, p, f_NL, beyond which the density is below exp(-12.5) of its peak.
 ///
 /// # Errors
-/// As [`fit_bias`]; `Length` unless there is a range for each free parameter; `Convergence` if the posterior does not end anywhere, as that of f_NL where b_g = p cannot be
+/// As [`fit_bias`](super::fit::fit_bias); `Length` unless there is a range for each free parameter; `Convergence` if the posterior does not end anywhere, as that of f_NL where b_g = p cannot be
 /// excluded.
 ///
 /// # Example
@@ -83,7 +83,7 @@ pub fn bias_range(
 /// `fixed`: the parameters that are not free.
 ///
 /// # Errors
-/// `Choice` for a set of parameters that [`fit_bias`] does not take, `Length` unless there is a place for each point, `NotFinite`, `Range` for a range that is empty, fewer than two points, or a
+/// `Choice` for a set of parameters that [`fit_bias`](super::fit::fit_bias) does not take, `Length` unless there is a place for each point, `NotFinite`, `Range` for a range that is empty, fewer than two points, or a
 /// chi^2 that overflows.
 ///
 /// # Example
