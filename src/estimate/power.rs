@@ -208,7 +208,7 @@ fn imaginary_part<T: Real>(f: &[T; 2], g: &[T; 2]) -> f64 {
 ///
 /// # Errors
 /// `Length` for weights of another number than `particles`; `Range` for a box that is not positive or whose volume no number holds, no particles, or weights that sum to
-/// 0;/// `NotFinite`.
+/// 0; `NotFinite`.
 ///
 /// # Example
 /// ```
