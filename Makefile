@@ -5,7 +5,7 @@
 #   make install        installs them; after `make` it needs no cargo, so that another user may run it
 #   make uninstall      removes what `make install` with the same variables and version put there
 #   make check-install  installs into target/, moves the tree, builds and runs packaging/consumers from it, and uninstalls
-#   make check-cinstall  the same of what cargo-c installs, for those who have it
+#   make check-cinstall  installs with cargo-c, for those who have it, compares the tree with what `make install` promises, and runs a program
 #   make abi            compares symbols, structs and constants with packaging/abi; FIXPAIR_BLESS=1 records additions
 #   make doxygen        the header as a manual, target/doxygen/html
 #

@@ -22,34 +22,12 @@ impl Simd {
     #[must_use]
     pub fn detect() -> Self {
         #[cfg(all(target_arch = "x86_64", feature = "std"))]
-        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
-            return Self::Avx2;
-        }
+        let has = std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma");
         #[cfg(all(target_arch = "x86_64", not(feature = "std")))]
-        {
-            use core::arch::x86_64::{__cpuid, __cpuid_count, _xgetbv};
-            #[target_feature(enable = "xsave")]
-            fn system_saves_ymm() -> bool {
-                // SAFETY: register 0 exists wherever xgetbv does.
-                unsafe { _xgetbv(0) & 0b110 == 0b110 }
-            }
-            const FMA: u32 = 1 << 12;
-            const OSXSAVE: u32 = 1 << 27;
-            const AVX: u32 = 1 << 28;
-            const AVX2: u32 = 1 << 5;
-            if __cpuid(0).eax >= 7 {
-                let one = __cpuid(1).ecx;
-                let wanted = FMA | OSXSAVE | AVX;
-                if one & wanted == wanted {
-                    // SAFETY: OSXSAVE says that the system lets programs execute xgetbv.
-                    let saved = unsafe { system_saves_ymm() };
-                    if saved && __cpuid_count(7, 0).ebx & AVX2 != 0 {
-                        return Self::Avx2;
-                    }
-                }
-            }
-        }
-        Self::Portable
+        let has = asked::avx2_and_fma();
+        #[cfg(not(target_arch = "x86_64"))]
+        let has = false;
+        if has { Self::Avx2 } else { Self::Portable }
     }
 
     /// Runs a loop compiled for this path. Only the width of the instructions differs: the compiler never fuses or reorders
@@ -71,13 +49,41 @@ impl Simd {
     }
 }
 
+/// The processor itself, asked without an operating system.
+#[cfg(all(target_arch = "x86_64", any(test, not(feature = "std"))))]
+mod asked {
+    use core::arch::x86_64::{__cpuid, __cpuid_count, _xgetbv};
+
+    const FMA: u32 = 1 << 12;
+    const OSXSAVE: u32 = 1 << 27;
+    const AVX: u32 = 1 << 28;
+    const AVX2: u32 = 1 << 5;
+
+    #[target_feature(enable = "xsave")]
+    fn system_saves_ymm() -> bool {
+        // SAFETY: register 0 exists wherever xgetbv does.
+        unsafe { _xgetbv(0) & 0b110 == 0b110 }
+    }
+
+    pub(super) fn avx2_and_fma() -> bool {
+        let wanted = FMA | OSXSAVE | AVX;
+        if __cpuid(0).eax < 7 || __cpuid(1).ecx & wanted != wanted {
+            return false;
+        }
+        // SAFETY: OSXSAVE says that the system lets programs execute xgetbv.
+        let saved = unsafe { system_saves_ymm() };
+        saved && __cpuid_count(7, 0).ebx & AVX2 != 0
+    }
+}
+
 #[cfg(all(test, target_arch = "x86_64"))]
 mod tests {
-    use super::Simd;
+    use super::{Simd, asked};
 
     #[test]
-    fn agrees_with_the_standard_library() {
+    fn the_processor_says_what_the_standard_library_says() {
         let expected = std::is_x86_feature_detected!("avx2") && std::is_x86_feature_detected!("fma");
+        assert_eq!(asked::avx2_and_fma(), expected);
         assert_eq!(Simd::detect() == Simd::Avx2, expected);
     }
 }

@@ -73,7 +73,7 @@ const SIZES: [usize; 24] = [
 
 /// Sides of meshes: small ones, for a mesh twice as wide takes eight times as long, and now and then one of each factor of the transform.
 const SIDES: [usize; 32] =
-    [4, 2, 4, 6, 4, 2, 4, 6, 4, 2, 4, 8, 4, 2, 4, 6, 4, 2, 4, 8, 4, 2, 4, 6, 4, 2, 4, 10, 4, 2, 6, 12];
+    [4, 2, 4, 6, 4, 2, 4, 6, 4, 2, 4, 8, 4, 2, 4, 6, 4, 2, 4, 8, 4, 2, 4, 6, 4, 2, 4, 10, 4, 14, 6, 12];
 
 impl<'a> Input<'a> {
     pub fn new(data: &'a [u8]) -> Self {
@@ -123,7 +123,7 @@ impl<'a> Input<'a> {
         if self.odd(16) { self.size() } else { self.few(below) }
     }
 
-    /// The side of a small mesh: 2 to 12.
+    /// The side of a small mesh: 2 to 14.
     pub fn small_side(&mut self) -> usize {
         SIDES[self.few(32)]
     }
@@ -178,8 +178,9 @@ impl<'a> Input<'a> {
         let kind = self.byte() % 96;
         let shown = match kind {
             93 => core::ptr::null_mut(),
-            94 if size_of::<T>() > 1 && !of.is_empty() => own.wrapping_byte_add(1),
-            // Outputs may lead to scratch, but scratch to no output: with a declared length of zero that is none, and scratch is written.
+            94 if !of.is_empty() => own.wrapping_byte_add(1),
+            // Never for scratch: an output of which no element is declared overlaps nothing, so that the library may write there, and the target would take
+            // it for an output touched.
             95 if size_of::<T>() > 1 => {
                 let place = self.few(self.shown.len().max(1));
                 match self.shown.get(place) {

@@ -65,8 +65,14 @@ impl Rows {
     }
 }
 
-/// As they are or by A_s; sometimes by sigma_8, which is an integral.
-const NORMALISATIONS: [i32; 8] = [3, 3, 2, 3, 1, 3, 2, 3];
+/// For the most part by A_s or an amplitude; seldom by sigma_8, which is an integral.
+const NORMALISATIONS: [i32; 8] = {
+    use {
+        FIXPAIR_NORMALISE_A_S as A_S, FIXPAIR_NORMALISE_AMPLITUDE as AMPLITUDE,
+        FIXPAIR_NORMALISE_SIGMA8 as SIGMA8,
+    };
+    [A_S, A_S, AMPLITUDE, A_S, SIGMA8, A_S, AMPLITUDE, A_S]
+};
 
 /// A fit without rows, or rows of P(k) or T(k).
 pub fn linear(input: &mut Input, rows: &Rows) -> fixpair_linear {

@@ -24,7 +24,8 @@ pub const FIXPAIR_MULTIPOLE_3: u32 = 8;
 /// In orders: the hexadecapole, l = 4.
 pub const FIXPAIR_MULTIPOLE_4: u32 = 16;
 
-/// What spectra and correlation functions are binned by. n is an integer vector: the mode k = (2 pi/L) n, or the separation x = (L/N) n.
+/// What spectra and correlation functions are binned by. n is an integer vector: the mode k = (2 pi/L) n, or the separation x = (L/N) n,
+/// N the cells on a side of the mesh.
 ///
 /// Bin b holds edges[b] <= |n|^2 < edges[b+1]: integers, so that no mode lies on an edge by rounding. With a second coordinate bin (b, c) is number
 /// b (second_edges_len - 1) + c. Wedges hold second_edges[c] <= mu < second_edges[c+1], edges in [0, 1], the last one inclusive, and mu = 0 at n = 0. With

@@ -136,7 +136,7 @@ unsafe fn whole_scratch<H: Hook>(
 ///         exec        or NULL
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _SCRATCH, _HOOK; FIXPAIR_ERROR_LENGTH also for fewer than 3 meshes,
 ///          FIXPAIR_ERROR_TABLE for edges that do not increase, FIXPAIR_ERROR_RANGE for edges beyond (n/2)^2 and shells that are not there,
-///          FIXPAIR_ERROR_NOT_FINITE if a sum is NaN or infinite; sums are untouched by all
+///          FIXPAIR_ERROR_NOT_FINITE if a sum is NaN or infinite, or why the hook is refused; sums are untouched by all
 ///
 /// # Safety
 /// Pointers are null or point to as many values as stated; the hooks keep their contracts.

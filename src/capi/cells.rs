@@ -15,8 +15,8 @@ use crate::status::Result;
 /// The particles are those with start H <= x < (start + count) H, H = L/n; a rounding error beyond counts as inside. Planes before and
 /// after: NGP 0 and 1, CIC 0 and 1, TSC 1 and 2, PCS 1 and 2 for mesh points at i H; NGP 0 and 0, CIC 1 and 1, TSC 1 and 1, PCS 2
 /// and 2 at (i + 1/2) H. If they meet round the mesh, the axis is whole. The result may run over the edge of the mesh: on each
-/// axis it holds the cells (start + a) mod n, 0 <= a < count. fixpair_deposit, fixpair_read_out, fixpair_add_cells, fixpair_copy_cells and
-/// fixpair_brick_reals take such bricks, other functions do not. Its cells lie close together, z fastest: its array has count[0] count[1] count[2] reals.
+/// axis it holds the cells (start + a) mod n, 0 <= a < count. fixpair_deposit, fixpair_read_out, fixpair_kick, their scratch queries,
+/// fixpair_add_cells, fixpair_copy_cells and fixpair_brick_reals take such bricks, other functions do not. Its cells lie close together, z fastest: its array has count[0] count[1] count[2] reals.
 ///
 /// Out: ghosted
 /// In:  brick   of configuration space: the cells that this process owns
@@ -57,9 +57,9 @@ pub unsafe extern "C" fn fixpair_brick_with_ghosts(
 /// ```c
 /// for (size_t a = 0; a < ghosted.count[0]; a++) {
 ///     fixpair_brick plane = ghosted;
-///     plane.start[0] = (ghosted.start[0] + a) % n;
+///     plane.start[0] = (ghosted.start[0] + a) % ghosted.n;
 ///     plane.count[0] = 1;
-///     send ghosts + a * ghosted.stride[0], count[1] * count[2] reals, to the owner of plane.start[0], unless it is this process;
+///     send ghosts + a * ghosted.stride[0], plane.count[1] * plane.count[2] reals, and plane to the owner of plane.start[0], unless it is this process;
 ///     there: fixpair_add_cells_f64(mesh, len, &slab, received, received_len, &plane, exec);
 /// }
 /// ```

@@ -16,7 +16,7 @@ use crate::scratch::Layout;
 use crate::status::Result;
 use crate::within::Within;
 
-/// Scratch of fixpair_correlation_modes_*: n/2 + 1 double.
+/// Scratch of fixpair_correlation_modes_*: n/2 + 1 doubles.
 ///
 /// Out: scratch
 /// In:  brick  of Fourier space

@@ -10,7 +10,8 @@ use crate::status::{Error, Result};
 
 /// f_NL of the potential in matter domination, as in studies of the microwave background: the usual one.
 pub const FIXPAIR_CONVENTION_CMB: i32 = 0;
-/// f_NL of the potential extrapolated linearly to z = 0: larger by g(z_rad)/g(0), 1.3 in LCDM, for the same field.
+/// f_NL of the potential extrapolated linearly to z = 0: larger by g(z_rad)/g(0), 1.3 in LCDM, for the same field, and
+/// g_NL by its square.
 pub const FIXPAIR_CONVENTION_LSS: i32 = 1;
 
 /// Rows (k, P(k)) of z = 0.
@@ -83,8 +84,8 @@ impl fixpair_cosmology {
 /// directly would have 1.3% more power in the paper's cosmology.)
 ///
 /// Between rows ln P is interpolated in ln k by monotone cubics. Below the first row, which should be below k = 1e-3 h/Mpc,
-/// T is constant and P goes as k^n_s; above the last, a power law with the last slope. P and T are one another by P = A k^n_s T^2,
-/// so that n_s of the cosmology must be that of the spectrum.
+/// T is constant and P goes as k^n_s; above the last, a power law with the last slope. P and T follow from one another by
+/// P = A k^n_s T^2: n_s of the cosmology must be that of the spectrum.
 ///
 /// fixpair_conditions_init fills one; else fill all members by hand.
 #[repr(C)]

@@ -119,7 +119,7 @@ unsafe fn query<H: Hook>(scratch: *mut Layout, fft: *const H, particles: usize, 
 ///      epoch     where they are: positions at an entry of the list, velocities there too or in the middle of the step before
 /// In:  gravity
 ///      displacements  for COLA; NULL for others
-///      scale_factors  scale_factors_len entries, increasing, in 1e-5 ..= 10; see fixpair_linear_steps
+///      scale_factors  scale_factors_len entries, increasing, from 1e-5 to 10; see fixpair_linear_steps
 ///      outputs   or NULL
 ///      mesh1, mesh2, mesh3  mesh_len >= fft->length reals each, overwritten; aligned as the transform wants them
 ///      fft       of a whole mesh: side = particles a side times the mesh factor B, usually 1 or 2
@@ -128,7 +128,7 @@ unsafe fn query<H: Hook>(scratch: *mut Layout, fft: *const H, particles: usize, 
 ///      exec      or NULL
 /// Returns: 0; FIXPAIR_ERROR_STOPPED if the observer asked for it: go on with the same list whenever you like; FIXPAIR_ERROR_NULL (also for COLA
 ///          without displacements), _LENGTH, _ALIGNMENT, _OVERLAP, _OVERFLOW, _RANGE (also for a list that does not increase, an epoch or output
-///          outside it, and no particles), _CHOICE, _VERSION, _SCRATCH, _CONVERGENCE, _BRICK for a part of a mesh, _NOT_FINITE: particles and epoch as they were,
+///          outside it, and no particles), _CHOICE, _VERSION, _SCRATCH, _CONVERGENCE, _BRICK for a part of a mesh, or why the hook is refused, _NOT_FINITE: particles and epoch as they were,
 ///          unless NOT_FINITE comes from a velocity or displacement, or from particles that move beyond all numbers. After that and after
 ///          FIXPAIR_ERROR_HOOK they are undefined
 /// Cost: a step is four transforms, a deposit, a kick and a drift; memory beyond the particles: three meshes

@@ -12,7 +12,7 @@ use crate::status::{Error, Result};
 ///
 /// parallel_for calls body(argument, index) exactly once for each index in 0 .. count-1, in any order, on any threads, and returns when
 /// all calls have returned: 0, or anything else to give up, which makes the kernel return FIXPAIR_ERROR_HOOK with outputs
-/// undefined. Results never depend on it, bit for bit. With OpenMP the whole hook is:
+/// undefined, unless its block says otherwise. Results never depend on it, bit for bit. With OpenMP the whole hook is:
 ///
 /// ```c
 /// static int32_t openmp_for(void *context, size_t count, void (*body)(void *, size_t), void *argument) {
@@ -151,7 +151,8 @@ unsafe extern "C" fn pool_for(
 
 /// Starts a pool of threads, for hosts without one. The calling thread counts as one of them and works too. The threads sleep between
 /// kernels. Several threads may use one pool; a kernel that finds it busy runs alone. This is the only function that
-/// starts threads or takes memory from the heap, and absent from a library built without the feature "std".
+/// starts threads, and but for faer (rule 1) the only one that takes memory from the heap. A library built without the feature "std" lacks it: there
+/// define FIXPAIR_NO_THREADS before this header is included.
 ///
 /// Out: threads  the pool; give it back to fixpair_threads_destroy
 ///      exec     a hook that runs loops on it, valid until then

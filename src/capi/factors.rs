@@ -43,7 +43,7 @@ pub(super) fn stepper(choice: i32, cola_exponent: f64) -> Result<Stepper> {
 /// In:  cosmology
 ///      stepper        FIXPAIR_STEPPER_FASTPM, _LEAPFROG or _COLA
 ///      cola_exponent  n, usually FIXPAIR_COLA_EXPONENT; read for COLA only: not 0, within +-10
-///      from, to, at   scale factors in 1e-5 ..= 10, in any order
+///      from, to, at   scale factors from 1e-5 to 10, in any order
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _RANGE, _CHOICE, _VERSION, _CONVERGENCE
 /// Cost: 0.4 ms
 ///

@@ -22,6 +22,10 @@ use crate::status::{Error, Result};
 ///
 /// Fill it by hand: zeros, then struct_size, the functions, the bricks (fixpair_brick_whole with padding 0 is FFTW's layout in one
 /// process) and the length (the larger of fixpair_brick_reals of both).
+///
+/// Functions refuse with FIXPAIR_ERROR_VERSION another struct_size, with FIXPAIR_ERROR_NULL a missing forward or inverse, with FIXPAIR_ERROR_BRICK bricks of
+/// the wrong space or of two meshes, with FIXPAIR_ERROR_LENGTH a length that is too short, and a brick as fixpair_brick says. That is what "why the hook is
+/// refused" means below.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct fixpair_fft_f64 {
@@ -34,7 +38,7 @@ pub struct fixpair_fft_f64 {
     /// Modes to cells, un-normalised.
     pub inverse: Option<unsafe extern "C" fn(context: *mut c_void, data: *mut f64) -> i32>,
     /// Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all. Asked
-    /// for by g_nl alone.
+    /// for by g_nl alone, which on a part of a mesh is FIXPAIR_ERROR_HOOK without it.
     pub sum: Option<unsafe extern "C" fn(context: *mut c_void, values: *mut f64, count: usize) -> i32>,
     /// Where the cells lie.
     pub configuration: fixpair_brick,
@@ -57,7 +61,7 @@ pub struct fixpair_fft_f32 {
     /// Modes to cells, un-normalised.
     pub inverse: Option<unsafe extern "C" fn(context: *mut c_void, data: *mut f32) -> i32>,
     /// Replaces each of count values by its sum over all processes that share the mesh. NULL where one process holds it all. Asked
-    /// for by g_nl alone.
+    /// for by g_nl alone, which on a part of a mesh is FIXPAIR_ERROR_HOOK without it.
     pub sum: Option<unsafe extern "C" fn(context: *mut c_void, values: *mut f64, count: usize) -> i32>,
     /// Where the cells lie.
     pub configuration: fixpair_brick,

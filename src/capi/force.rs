@@ -141,9 +141,8 @@ pub unsafe extern "C" fn fixpair_force_scratch(scratch: *mut Layout, n: usize) -
 ///    fft.inverse(fft.context, x);                        and y, z
 ///    fixpair_read_out_f64(force_x, 3, x, len, &cells, ...);    and y, z, with the same window
 ///
-/// In/Out: x     len reals on the brick: F_k, the forward transform of deposited weights, not normalised; then the modes of F_x, whose inverse
-///         transform,
-///               not normalised, is the force on the cells
+/// In/Out: x     len reals on the brick: F_k, the forward transform of deposited weights, not normalised; then the modes of F_x,
+///               whose inverse transform, not normalised, is the force on the cells
 /// Out: y, z     len reals each: the modes of F_y and F_z
 /// In:  brick    of Fourier space
 ///      law

@@ -229,6 +229,23 @@ unsafe fn conditions_scratch<H: Hook>(
 /// One particle for each cell of fft->configuration, numbered with z fastest; ids from fixpair_particle_ids. Two calls that differ in
 /// phase give a pair; two that differ in f_nl, cosmology or redshift, with one seed, are matched.
 ///
+/// ```c
+/// fixpair_layout size;                                       new(size): aligned_alloc(size.align, size.size)
+/// fixpair_fft_tables_scratch_f64(&size, n);
+/// void *tables = new(size);  size_t tables_len = size.size;
+/// fixpair_fft_tables_init_f64(tables, tables_len, n);
+/// fixpair_fft_f64 fft;                                       or FFTW by hand
+/// fixpair_fft_scratch_f64(&size, n);
+/// fixpair_fft_init_f64(&fft, tables, tables_len, fixpair_fft_padding_f64(n), new(size), size.size, NULL);
+/// fixpair_conditions c;
+/// fixpair_conditions_init(&c, seed);
+/// c.realisation.amplitude = FIXPAIR_AMPLITUDE_FIXED;
+/// c.f_nl = 100.0;
+/// fixpair_components_f64 position = {x, x + 1, x + 2, 3, n * n * n}, velocity = {v, v + 1, v + 2, 3, n * n * n};
+/// fixpair_initial_conditions_scratch_f64(&size, &c, &fft, NULL);
+/// fixpair_initial_conditions_f64(&position, &velocity, &c, &fft, NULL, new(size), size.size, NULL);
+/// ```
+///
 /// Out: position    Mpc/h, in [0, L): length = cells of fft->configuration
 ///      velocity    peculiar, km/s (Gadget files store it divided by sqrt(a)): the same length
 /// In:  conditions

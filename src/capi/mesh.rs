@@ -20,7 +20,8 @@ pub const FIXPAIR_SPACE_FOURIER: i32 = 1;
 ///
 /// Fill it with one of the functions below, or by hand for any other layout (a pencil, say). Functions refuse with
 /// FIXPAIR_ERROR_MESH_SIZE an n that is zero or odd, with FIXPAIR_ERROR_OVERFLOW one above 2^21 and a part that no memory holds (the whole mesh
-/// need not fit any), and with FIXPAIR_ERROR_BRICK a part outside the mesh or strides that put two elements on one address.
+/// need not fit any), with FIXPAIR_ERROR_CHOICE an unknown space, and with FIXPAIR_ERROR_BRICK a part outside the mesh, strides that put two elements on
+/// one address, and the space that they do not take. That is what "why the brick is refused" means below.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct fixpair_brick {

@@ -25,7 +25,7 @@ pub const FIXPAIR_SCHEME_FASTPM: i32 = 2;
 pub const FIXPAIR_AMPLITUDE_NORMAL: i32 = 0;
 /// |w| = 1, the root mean square: the field has exactly the input power.
 pub const FIXPAIR_AMPLITUDE_FIXED: i32 = 1;
-/// |w| = sqrt(pi)/2, the mean modulus: a biased choice, which leaves pi/4 of the input power.
+/// |w| = sqrt(pi)/2, the mean modulus (of self-conjugate modes sqrt(2/pi)): a biased choice, which leaves pi/4 of the input power.
 pub const FIXPAIR_AMPLITUDE_FIXED_TO_MEAN: i32 = 2;
 
 /// Phases as drawn.
@@ -139,7 +139,7 @@ pub unsafe extern "C" fn fixpair_philox4x32_10(
 /// Unit modes w: <|w|^2> = 1, Hermitian, DC zero. With a table of amplitudes, w times amplitude[|n|^2].
 ///
 /// The phase is 2 pi u1 and the modulus sqrt(-ln u2), of two uniforms of 53 bits; fixing uses the same u1, so that fixed and
-/// normal modes are matched. Self-conjugate modes are real. Single precision is the rounded double precision.
+/// normal modes are matched. Self-conjugate modes are real: sqrt(-2 ln u2) cos(2 pi u1), fixed its sign. Single precision is the rounded double precision.
 ///
 /// Schemes NGENIC and FASTPM draw u1 and u2, of 48 bits, from ranlxd1, seeded for each (i, j) with fixpair_ngenic_seeds, from l = 0
 /// upwards; u2 is drawn again while it is zero. w is the mode that N-GenIC, 2LPTic, 2LPTPNG, L-PICOLA or FastPM multiply by
@@ -263,7 +263,8 @@ unsafe fn white<T: Real>(
 }
 
 /// Imposes the realisation's amplitude, phase, Nyquist choice and selection on unit modes that the host drew itself (its seed and
-/// scheme are not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; DC and modes outside the selection become zero.
+/// scheme are not used). Normal keeps w; fixed makes it w/|w|, or 1 where w = 0; fixed to the mean sqrt(pi)/2
+/// times that, or sqrt(2/pi) where modes are self-conjugate; DC and modes outside the selection become zero.
 ///
 /// In/Out: modes        len reals: Hermitian modes of the brick
 /// In:     brick        of Fourier space

@@ -10,8 +10,8 @@ use crate::status::{Error, Result};
 
 /// Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
 /// of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
-/// sizeof(struct) / sizeof(double). A stride of 0 is refused (FIXPAIR_ERROR_RANGE), and so are arrays that share memory with different
-/// strides (FIXPAIR_ERROR_OVERLAP).
+/// sizeof(struct) / sizeof(double). A stride of 0 is refused (FIXPAIR_ERROR_RANGE), and so are two arguments of
+/// one call that lie in the same memory with strides of different bytes (FIXPAIR_ERROR_OVERLAP).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct fixpair_components_f64 {
@@ -37,8 +37,8 @@ impl Triple for fixpair_components_f64 {
 
 /// Three components for each of `length` particles, where the host keeps them: component x of particle i is x[i * stride], and so on. Arrays
 /// of triples: y = x + 1, z = x + 2, stride 3. Three arrays: stride 1. A member of the host's particle struct: stride
-/// sizeof(struct) / sizeof(float). A stride of 0 is refused (FIXPAIR_ERROR_RANGE), and so are arrays that share memory with different
-/// strides (FIXPAIR_ERROR_OVERLAP).
+/// sizeof(struct) / sizeof(float). A stride of 0 is refused (FIXPAIR_ERROR_RANGE), and so are two arguments of
+/// one call that lie in the same memory with strides of different bytes (FIXPAIR_ERROR_OVERLAP).
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct fixpair_components_f32 {
@@ -111,7 +111,7 @@ pub(super) unsafe fn components_of<'a, C: Triple>(
 ///      box_size  L
 ///      c1, c2    velocity over displacement: a H f1 and a H f2, H = 100 E(a) km/s per Mpc/h
 ///      exec      or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _BRICK, _HOOK; FIXPAIR_ERROR_NOT_FINITE for box_size, c1 and c2, or
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE, _HOOK, or why the brick is refused; FIXPAIR_ERROR_NOT_FINITE for box_size, c1 and c2, or
 ///          for displacements that are NaN, infinite or beyond 1e9 boxes and velocities beyond the numbers, after which both are undefined
 ///
 /// # Safety

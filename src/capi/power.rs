@@ -103,7 +103,7 @@ pub unsafe extern "C" fn fixpair_power_sums_scratch(
 ///    fixpair_power_sums_f64(sums, words, ...);            on each rank, then MPI_Allreduce(MPI_INT64_T, MPI_SUM)
 ///    fixpair_binning_read(bins, bins_len, P, P_len, sums, words, &binning, pairs_len);
 ///    fixpair_binning_normalise(P, P_len, bins, bins_len, binning.orders, L*L*L);    L*L*L/(W*W) for a deposit whose weights sum to W
-///    fixpair_subtract_shot_noise(P, P_len, pairs, pairs_len, bins, bins_len, binning.orders, &noise, 1);    if wanted
+///    fixpair_subtract_shot_noise(P, P_len, pairs, pairs_len, bins, bins_len, binning.orders, noise, fields_len);    if wanted
 ///
 /// The bits do not depend on threads or on how the mesh is cut along x or y; bricks that cut axis 2 agree to rounding.
 ///
@@ -236,7 +236,7 @@ unsafe fn add<T: Real>(
 /// The shot noise of particles: V sum w^2/(sum w)^2, or V/N without weights, V = L^3.
 ///
 /// Out: noise      in the unit of L^3
-/// In:  weights    of particle i at weights[i * weights_stride]; NULL, with a stride of 0, for equal weights
+/// In:  weights    of particle i at weights[i * weights_stride]; NULL for equal weights, of which no stride is read
 ///      particles  how many
 ///      box_size   L
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a box that is not positive or whose volume
@@ -305,7 +305,7 @@ unsafe fn noise_of<T: Real>(
 /// In:     pairs   2 pairs_len numbers of fields
 ///         bins    bins_len bins; empty ones stay 0
 ///         orders  as in the binning
-///         noise   noise_len values: of each field
+///         noise   noise_len values: one for each field that a pair names, be it in cross spectra alone
 /// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, FIXPAIR_ERROR_RANGE for a pair of a field without noise or for orders
 ///
 /// # Safety
@@ -334,7 +334,7 @@ pub unsafe extern "C" fn fixpair_subtract_shot_noise(
     })())
 }
 
-/// Scratch of fixpair_compensate_*: n/2 + 1 double.
+/// Scratch of fixpair_compensate_*: n/2 + 1 doubles.
 ///
 /// Out: scratch
 /// In:  brick  of Fourier space

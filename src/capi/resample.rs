@@ -131,7 +131,7 @@ pub unsafe extern "C" fn fixpair_jackknife(
     })())
 }
 
-/// The covariance of its statistics: (N - 1)/N sum of products about their mean.
+/// The jackknife's covariance of statistics: (N - 1)/N times the sum of products of their deviations from the mean over the deleted rows.
 ///
 /// Out: covariance  values x values doubles
 /// In:  deleted     rows x values, as for fixpair_jackknife

@@ -34,7 +34,7 @@ pub unsafe extern "C" fn fixpair_continuum_modes(
     })())
 }
 
-/// The exact number of modes with edges[b] <= |n|^2 < edges[b + 1], n the integers k L/(2 pi), counting n and -n: 26, 66, 158, 234, ... of edges 1, 4, 9, 16, ... An edge of 0 counts n = 0 too
+/// The exact number of modes with edges[b] <= |n|^2 < edges[b + 1], n the integers k L/(2 pi), counting n and -n: 26, 66, 158, 234, ... of edges 1, 4, 9, 16, ... An edge of 0 counts n = 0 too.
 ///
 /// Out: counts  edges_len - 1 numbers
 /// In:  edges   edges_len integers, increasing
@@ -184,7 +184,7 @@ unsafe fn means<'a>(
 ///
 /// Out: ratio, error   len doubles each
 /// In:  above, above_error, below, below_error  len means a and b and their standard errors
-///      correlation    len coefficients rho of the two means, for simulations that share their seeds that of their values; NULL for independent ones
+///      correlation    len coefficients rho of the two means: for simulations that share their seeds that of their values; NULL where they are independent
 /// Returns: 0, FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, _OVERFLOW, _NOT_FINITE, FIXPAIR_ERROR_RANGE for b = 0, negative errors, |rho| > 1, or a result that overflows
 ///
 /// # Safety

@@ -115,7 +115,8 @@ unsafe fn shape_scratch<H: Hook>(
 ///         work     transform on which products are taken: of side n (they alias), or of side 3n/2 or more (exact)
 ///         scratch  scratch_len bytes, see fixpair_add_shape_scratch_f64
 ///         exec     or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _SCRATCH, _HOOK, _BRICK for a side between n and 3n/2, _RANGE for
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _SCRATCH, _HOOK, _BRICK for a side of work other than n and below 3n/2, or
+///          why the brick or the hook is refused, _RANGE for
 ///          |n_s| above 10, for exponents above 8, that do not sum to 0 within 1e-12, or with n^|e s| above 1e18
 /// Cost: transforms of work: local 2, equilateral, orthogonal and folded 7, orthogonal LSS 14
 ///

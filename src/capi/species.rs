@@ -35,7 +35,8 @@ pub struct fixpair_species {
     /// T_s of the species: T_m itself, or that of matter without neutrinos, if there is but one.
     pub density: *const f64,
     /// V_s: f T_s where growth does not depend on k. CAMB: v_newtonian_cdm or v_newtonian_baryon as it stands beside the other columns.
-    /// CLASS: theta_s/(a H) of the Newtonian gauge, or (theta_s + alpha k^2)/(a H) of the synchronous, beside -d_s, for columns are positive.
+    /// CLASS: theta_s/(a H) of the Newtonian gauge, or (theta_s + (h' + 6 eta')/2)/(a H) of the synchronous, with theta_s, h', eta'
+    /// and a H all in CLASS's 1/Mpc; beside -d_s, for columns are positive.
     pub velocity: *const f64,
     /// What the linear spectrum, scaled back with D(a) of the background, stands for: T_m(k, z = 0) D(a). Then growth that depends on k is
     /// accounted for, and modes of total matter are T_m(k, a). NULL for T_m itself: growth as of the background.
@@ -103,7 +104,8 @@ pub unsafe extern "C" fn fixpair_species_init(species: *mut fixpair_species) -> 
 /// Out: table    table_len = fixpair_mode_table_length(n) factors; entry 0 is 0
 /// In:  species
 ///      ratio    FIXPAIR_RATIO_MATTER, _DENSITY or _VELOCITY
-///      n, L     side of the mesh in cells and of the box in Mpc/h
+///      n        cells on a side of the mesh
+///      box_size L
 ///      exec     or NULL
 /// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _VERSION, _CHOICE, _NOT_FINITE, _RANGE, _TABLE for columns that are not positive or k that
 ///          does not increase, _MESH_SIZE, _OVERFLOW, _HOOK

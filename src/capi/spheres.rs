@@ -95,7 +95,7 @@ pub unsafe extern "C" fn fixpair_spheres_scratch_f32(
 ///
 /// Out: spheres            for each centre, each overdensity; spheres_len = centres_len x overdensities_len
 /// In:  centres            centres_len of them, 3 numbers each; any finite numbers, taken modulo L. See fixpair_refine_centres_f64
-///      overdensities      overdensities_len values of Delta, 2 and more; see fixpair_overdensity
+///      overdensities      overdensities_len values of Delta, each at least 2; see fixpair_overdensity
 ///      position           all particles that may lie in the spheres; with several processes: with ghosts as deep as the largest radius
 ///      box_size           L
 ///      particles_total    N, of the whole simulation on all processes

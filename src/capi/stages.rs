@@ -187,7 +187,8 @@ unsafe fn local_scratch<H: Hook>(scratch: *mut Layout, work: *const H) -> Result
 ///         mesh     mesh_len >= work->length reals, overwritten
 ///         scratch  scratch_len bytes, see fixpair_add_local_scratch_f64
 ///         exec     or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _SCRATCH, _BRICK for a side between n and 3n/2 or 2n;
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _NOT_FINITE, _SCRATCH, _BRICK for a side of work other than n and below
+///          3n/2 (with g_nl 2n), or why the brick or the hook is refused;
 ///          after FIXPAIR_ERROR_HOOK modes are undefined
 ///
 /// # Safety
@@ -268,7 +269,8 @@ unsafe fn local<H: Hook>(
 ///      work     transform on which products are taken: of the side of the brick (they alias), or 3/2 of it or more (exact)
 ///      mesh1, mesh2, mesh3  mesh_len >= work->length reals each, overwritten
 ///      exec     or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _BRICK; after FIXPAIR_ERROR_HOOK source is undefined
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _BRICK for a side of work other than that of the brick and below 3/2
+///          of it, or why the brick or the hook is refused; after FIXPAIR_ERROR_HOOK source is undefined
 /// Cost: 7 transforms of work
 ///
 /// # Safety
@@ -378,8 +380,8 @@ unsafe fn source_modes<H: Hook>(
 ///      scale
 ///      fft     the transform
 ///      exec    or NULL
-/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE for an axis above 2, _NOT_FINITE, _BRICK; after
-///          FIXPAIR_ERROR_HOOK psi is undefined
+/// Returns: 0, FIXPAIR_ERROR_NULL, _LENGTH, _ALIGNMENT, _OVERLAP, _RANGE for an axis above 2, _NOT_FINITE, _BRICK for a side of
+///          fft above that of the brick, or why the brick or the hook is refused; after FIXPAIR_ERROR_HOOK psi is undefined
 /// Cost: 1 transform
 ///
 /// # Safety

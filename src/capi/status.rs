@@ -4,8 +4,7 @@ use core::ffi::c_char;
 
 use crate::status::{Error, Result};
 
-/// What every function returns: 0 if it did what its documentation says, else one of the negative FIXPAIR_ERROR_ codes,
-/// with all outputs untouched unless the function's documentation says otherwise.
+/// What functions that can fail return: 0, or one of the negative FIXPAIR_ERROR_ codes, with outputs as rule 3 says.
 pub type fixpair_status_t = i32;
 
 /// Done.

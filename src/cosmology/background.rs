@@ -300,5 +300,6 @@ pub fn radiation_density(t_cmb: f64, n_eff: f64, h: f64) -> Result<f64> {
     let photons = 4.0 * STEFAN_BOLTZMANN / (LIGHT * LIGHT * LIGHT) * libm::pow(t_cmb, 4.0);
     let neutrinos = 0.875 * libm::pow(4.0 / 11.0, 4.0 / 3.0) * n_eff;
     let density = (1.0 + neutrinos) * photons / critical;
-    if density.is_finite() { Ok(density) } else { Err(Error::Range) }
+    // Of squares that under- or overflow it would be 0 or infinite.
+    if density > 0.0 && density.is_finite() { Ok(density) } else { Err(Error::Range) }
 }

@@ -26,8 +26,8 @@ use crate::status::{Error, Result};
 pub const EARLIEST_GROWTH: f64 = 1e-5;
 
 /// Step in ln a. The relative errors that it leaves today are 1e-10 in D and f, 2e-9 in the second order and 5e-9 in the third.
-/// A fuzzer does not look at digits, and has ten million calls to make.
-const STEP: f64 = if cfg!(fuzzing) { 0.5 } else { 1.0 / 128.0 };
+/// The targets of `fuzz/` do not look at digits, and have ten million calls to make.
+const STEP: f64 = if cfg!(fixpair_fuzzing) { 0.5 } else { 1.0 / 128.0 };
 
 /// Growth functions at one scale factor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

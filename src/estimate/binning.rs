@@ -45,7 +45,7 @@ pub struct Binning<'a> {
 pub struct Bin {
     /// Modes, counting k and -k, or separations; 0 where none falls into the bin.
     pub count: u64,
-    /// Their mean |n|, or mean n_perp; 0 where there are none. Times 2 pi/L it is a wavenumber, times L/N a separation.
+    /// Their mean |n|, or mean n_perp; 0 where there are none. Times 2 pi/L it is a wavenumber, times L over the cells on a side a separation.
     pub first: f64,
     /// Their mean mu, or mean |n.a|; 0 without a second coordinate.
     pub second: f64,

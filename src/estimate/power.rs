@@ -238,7 +238,7 @@ pub(crate) fn shot_noise_of(
         return Err(Error::Range);
     }
     let volume = box_size * box_size * box_size;
-    if !volume.is_finite() {
+    if !(volume > 0.0 && volume.is_finite()) {
         return Err(Error::Range);
     }
     let Some(weights) = weights else { return Ok(volume / particles as f64) };

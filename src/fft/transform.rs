@@ -118,15 +118,17 @@ impl<'a, T: Real> Transform<'a, T> {
     /// The same transform by another code path, where the processor has it. Paths differ by rounding.
     ///
     /// ```
-    /// # use fixpair::{exec::Serial, fft::{Tables, Transform}, mesh::{Brick, Space}};
+    /// # use fixpair::{exec::Serial, fft::{Fft3, Tables, Transform}, mesh::{Brick, Space}};
     /// # #[repr(align(64))] struct Memory([u8; 1 << 16]);
     /// # let (mut tables, mut work) = (Memory([0; 1 << 16]), Memory([0; 1 << 16]));
     /// # let tables = Tables::<f64>::new(8, &mut tables.0)?;
-    /// # let mut fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
+    /// # let fft = Transform::new(&tables, Brick::whole(8, Space::Configuration)?, &mut work.0, &Serial)?;
     /// use fixpair::simd::Simd;
     ///
-    /// let fft = fft.with_simd(Simd::Portable); // the bits of processors without AVX2
-    /// # let _ = fft;
+    /// let mut fft = fft.with_simd(Simd::Portable); // the bits of processors without AVX2
+    /// let mut cells = vec![1.0; fft.length()];
+    /// fft.forward(&mut cells)?;
+    /// assert_eq!(cells[0], 512.0);
     /// # Ok::<(), fixpair::status::Error>(())
     /// ```
     #[must_use]

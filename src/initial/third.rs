@@ -113,11 +113,14 @@ pub fn second_order_exact<T: Real>(
 /// let mut delta = vec![0.0; fft.length()];
 /// delta[2] = 0.01; // the mode (0, 0, 1) of a density contrast
 /// let second = vec![0.0; fft.length()]; // second_order_exact gives none for it
-/// let mut out: [_; 5] = core::array::from_fn(|_| vec![1.0; fft.length()]);
+/// let mut sources: [_; 5] = core::array::from_fn(|_| vec![1.0; fft.length()]);
 /// let mut meshes: [_; 12] = core::array::from_fn(|_| vec![0.0; fft.length()]);
-/// let (out, meshes) = (out.each_mut().map(|mesh| &mut mesh[..]), meshes.each_mut().map(|mesh| &mut mesh[..]));
+/// let (out, meshes) = (sources.each_mut().map(|mesh| &mut mesh[..]), meshes.each_mut().map(|mesh| &mut mesh[..]));
 /// let mut table = vec![[0.0; 2]; half_cells_length(8)];
-/// third_order_sources(out, &delta, &second, &mut fft, meshes, &mut table, &Serial)?; // nor is there any of the third order
+/// third_order_sources(out, &delta, &second, &mut fft, meshes, &mut table, &Serial)?;
+/// // Nor is there any of the third order.
+/// let brick = *fft.fourier();
+/// assert!(sources.iter().all(|source| source.iter().take(brick.reals()).all(|part| part.abs() < 1e-12)));
 /// # Ok::<(), fixpair::status::Error>(())
 /// ```
 pub fn third_order_sources<T: Real>(

@@ -56,7 +56,7 @@ pub enum Stepper {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
 pub struct StepFactors {
-    /// d, of the velocity; or k, of the force.
+    /// What a drift multiplies the velocity by, and a kick the force.
     pub factor: f64,
     /// Of the first-order displacement over D: 0 but for COLA.
     pub first: f64,

@@ -7,8 +7,12 @@ use super::likelihood::BiasLikelihood;
 use crate::status::{Error, Result};
 use crate::within::Within;
 
-/// chi^2 above the least at which a range ends: a density of exp(-12.5).
-const REACH: f64 = 25.0;
+/// Standard deviations to either side of the least chi^2 that a range begins with.
+const SIGMAS: f64 = 5.0;
+/// chi^2 above the least at which a range ends: there, a density of exp(-12.5).
+const REACH: f64 = SIGMAS * SIGMAS;
+/// What a place must be lower than the fit to be another minimum, relative to 1 + chi^2: rounding, and what the fit left.
+const LOWER: f64 = 1e-9;
 /// Places on an edge or side that are tried to find where it is reached.
 const PLACES: usize = 65;
 /// How often a range may grow, by a quarter each time.
@@ -39,7 +43,7 @@ pub(super) fn locate(
     for _ in 0..ATTEMPTS {
         let fit = fit_bias(likelihood, &from, mask)?;
         let (range, lowest) = range(likelihood, &from, &fit, &free)?;
-        if lowest.chi_squared >= fit.chi_squared - 1e-9 * (1.0 + fit.chi_squared) {
+        if lowest.chi_squared >= fit.chi_squared - LOWER * (1.0 + fit.chi_squared) {
             return Ok((fit, range));
         }
         from = lowest.place;
@@ -98,13 +102,16 @@ fn range(
         return Err(Error::Convergence);
     }
     // All valleys that are deep enough.
-    let mut range = [[f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]];
+    let mut range = [[0.0; 2]; 2];
+    range.part_mut(..count).fill([f64::INFINITY, f64::NEG_INFINITY]);
     minima(likelihood, start, free, |place, chi_squared| {
         let Ok(errors) = errors(likelihood, place, free) else { return };
         if chi_squared < fit.chi_squared + REACH {
-            for (axis, (centre, error)) in free.of(place).into_iter().zip(errors).enumerate() {
-                range[axis] =
-                    [range[axis][0].min(centre - 5.0 * error), range[axis][1].max(centre + 5.0 * error)];
+            for ((centre, error), range) in
+                free.of(place).into_iter().zip(errors).zip(range.part_mut(..count))
+            {
+                let reach = SIGMAS * error;
+                *range = [range[0].min(centre - reach), range[1].max(centre + reach)];
             }
         }
     })?;
@@ -135,7 +142,7 @@ fn range(
             return Err(Error::Convergence);
         }
     }
-    // Then in, to where it has just vanished.
+    // Then in, to where it has just vanished; once more, because a range that was much too wide is resolved by the second pass alone.
     for _ in 0..2 {
         let before = range;
         for (axis, &side) in before.iter().enumerate().take(count) {

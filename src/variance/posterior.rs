@@ -18,7 +18,7 @@ use crate::within::Within;
 /// Uniform grids of one or two parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// First and last value of each parameter, in the order b_g, p, f_NL of those that are free.
+    /// First and last value of each parameter, in the order b_g, p, f_NL of those that are free; the second is not used where one is free.
     pub range: [[f64; 2]; 2],
     /// Values of each; 1 for the second where one is free.
     pub points: [usize; 2],
@@ -356,8 +356,12 @@ pub fn bias_posterior(
     for (i, first) in first.iter_mut().enumerate() {
         for (j, second) in second.iter_mut().take(grid.points[1]).enumerate() {
             let at = free.with(&fit.value, [grid.value(0, i), grid.value(1, j)]);
+            let chi_squared = likelihood.at(&at);
+            if chi_squared.is_nan() {
+                return Err(Error::Range);
+            }
             // Above 1 only by rounding, or in a valley narrower than the search; and never infinite.
-            let density = libm::exp((0.5 * (fit.chi_squared - likelihood.at(&at))).min(300.0));
+            let density = libm::exp((0.5 * (fit.chi_squared - chi_squared)).min(300.0));
             *first += end_weight(j, grid.points[1]) * density;
             *second += end_weight(i, points) * density;
         }

@@ -29,7 +29,7 @@ macro_rules! in_precision {
                 let fft = $some(input);
                 let fine = if input.odd(8) { Some($of(12)) } else { None };
                 let n = fft.configuration.n;
-                let count = if input.odd(16) || n > 12 { input.few(100) } else { n * n * n };
+                let count = if input.odd(16) || n > 14 { input.few(100) } else { n * n * n };
                 let (places, moved) = (Cloud::<$r>::places(input, count, BOX), Cloud::<$r>::between(input, count, -1.0, 1.0));
                 let mut layout = layout();
                 let asked = call!([<fixpair_initial_conditions_scratch_ $r>](&mut layout, &conditions, &fft, pointer(&fine)));

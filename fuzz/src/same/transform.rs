@@ -7,7 +7,7 @@ use crate::reference::dft;
 
 pub fn run(data: &[u8]) {
     let input = &mut Input::new(data);
-    let n = input.small_side().min(if input.odd(4) { 12 } else { 8 });
+    let n = input.small_side().min(if input.odd(4) { 14 } else { 8 });
     if input.flag() { in_f32(input, n) } else { in_f64(input, n) }
 }
 

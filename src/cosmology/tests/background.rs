@@ -43,6 +43,7 @@ fn radiation_is_that_of_the_embedded_spectrum() {
     // T^4 overflows, and h^2 is zero.
     assert_eq!(radiation_density(1e300, 3.0, 0.7), Err(Error::Range));
     assert_eq!(radiation_density(2.7, 3.0, 1e-300), Err(Error::Range));
+    assert_eq!(radiation_density(2.7, 3.0, 1e200), Err(Error::Range));
 }
 
 #[test]

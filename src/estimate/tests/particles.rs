@@ -86,6 +86,7 @@ fn shot_noise_is_v_over_n_and_subtracted_from_auto_monopoles_alone() {
     assert_eq!(shot_noise::<f64>(None, 1, 0.0), Err(Error::Range));
     // L^3 overflows.
     assert_eq!(shot_noise::<f64>(None, 1, 1e103), Err(Error::Range));
+    assert_eq!(shot_noise::<f64>(None, 1, 1e-110), Err(Error::Range));
     assert_eq!(shot_noise::<f64>(None, 1, f64::INFINITY), Err(Error::NotFinite));
 
     let full = Bin { count: 4, first: 1.0, second: 0.0 };
