@@ -17,15 +17,14 @@
  *     One piece of scratch of the largest size may serve all calls, one after the other, but for that of fixpair_fft_init, which its hook keeps.
  *  2. There are no globals. Calls on different memory may run at the same time.
  *  3. A function that can fail returns a status: 0 if it did what it says, else a negative FIXPAIR_ERROR_ code, with all outputs
- *     untouched unless its block says otherwise; after FIXPAIR_ERROR_HOOK those on which work had begun are undefined. fixpair_status_message says what is wrong. Parameters and tables are checked
- *     for NaN; modes are not, unless the block says so: NaN in, NaN out. Particles with NaN
- *     are refused, and so are power spectra of modes with NaN.
- *     No input makes a function panic, abort or exit.
+ *     untouched unless its block says otherwise; after FIXPAIR_ERROR_HOOK those on which work had begun are undefined.
+ *     fixpair_status_message says what is wrong. Parameters and tables are checked for NaN; modes are not, unless the block says so: NaN in, NaN
+ *     out. Particles with NaN are refused, and so are power spectra of modes with NaN. No input makes a function panic, abort or exit.
  *  4. Unless stated, no pointer may be NULL, pointers are aligned to their element, and memory that is written overlaps nothing else.
  *     A length follows its array, or the last of several arrays of one length. It counts elements, for scratch bytes. "rows numbers" are as many
  *     as the parameter `rows` says. An array on a brick has as many reals as fixpair_brick_reals says, or more. An array of length 0 may be
  *     NULL. What breaks these rules is refused: FIXPAIR_ERROR_NULL, _ALIGNMENT, _OVERLAP, and FIXPAIR_ERROR_OVERFLOW for what is too long
- *     to be in memory; so may every function that takes a pointer, whether its block names all four or not.
+ *     to be in memory. Every function that takes a pointer may return these, whether its block names all four or not.
  *  5. Arguments come in this order: outputs, inputs, scratch, exec. Enumerations travel as int32_t. A struct that may grow
  *     begins with its size: fill it with its _init function, or by hand where it has none.
  *  6. The same seed is the same universe. Random modes agree bit for bit: on any number of threads and any machine, in any decomposition,
