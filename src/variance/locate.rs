@@ -102,16 +102,13 @@ fn range(
         return Err(Error::Convergence);
     }
     // All valleys that are deep enough.
-    let mut range = [[0.0; 2]; 2];
-    range.part_mut(..count).fill([f64::INFINITY, f64::NEG_INFINITY]);
+    let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     minima(likelihood, start, free, |place, chi_squared| {
         let Ok(errors) = errors(likelihood, place, free) else { return };
         if chi_squared < fit.chi_squared + REACH {
-            for ((centre, error), range) in
-                free.of(place).into_iter().zip(errors).zip(range.part_mut(..count))
-            {
+            for (axis, (centre, error)) in free.of(place).into_iter().zip(errors).enumerate() {
                 let reach = SIGMAS * error;
-                *range = [range[0].min(centre - reach), range[1].max(centre + reach)];
+                range[axis] = [range[axis][0].min(centre - reach), range[axis][1].max(centre + reach)];
             }
         }
     })?;
